@@ -141,7 +141,7 @@ fn parts() {
 /// Returns the trace with every coefficient divided by three.
 fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     let layout = Layout::for_scene(scene);
-    let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));
+    let (mut reader, mut writer) = (Reader::from_slice(trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a sound trace") {
         frame.polynomials.coefficients.iter_mut().for_each(|coefficient| *coefficient /= 3.0);

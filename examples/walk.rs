@@ -9,7 +9,7 @@ use std::{env, error::Error, fs};
 /// Returns a line per record that holds an impulse: how many there are, and where the first particle is.
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let layout = Layout::for_scene(&scene::read("scene", scene)?.scene);
-    let mut reader = Reader::of_slice(trace, layout);
+    let mut reader = Reader::from_slice(trace, layout);
     let (mut frame, mut record, mut text) = (Frame::default(), 0, String::new());
     while reader.next(&mut frame)? {
         if !frame.impulses.is_empty() {

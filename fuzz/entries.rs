@@ -48,7 +48,7 @@ pub fn scene(bytes: &[u8]) {
         *max_iterations = (*max_iterations).min(5);
     }
     if let Ok((layout, trace, true)) = record(&scene, SMALL) {
-        let mut reader = Reader::of_slice(&trace, layout);
+        let mut reader = Reader::from_slice(&trace, layout);
         let mut frame = Frame::default();
         while reader.next(&mut frame).expect("our own recording is sound") {
             assert!(reader.notes().is_empty(), "our own recording has nothing odd: {:?}", reader.notes());
@@ -74,7 +74,7 @@ pub fn trace(bytes: &[u8]) {
     let scene = original::read(xml.as_bytes()).expect("our own scene").scene;
     let layout = Layout::for_scene(&scene);
 
-    let strict = frames(Reader::of_slice(trace, layout));
+    let strict = frames(Reader::from_slice(trace, layout));
     assert_eq!(strict, frames(Reader::new(trace, layout)), "knowing the length makes no difference");
 
     let mut lenient = Lenient::new(trace, layout);
@@ -100,7 +100,7 @@ pub const EXTREMES: [f64; 10] =
 pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
     let scene = original::read(SCENES[choice].as_bytes()).expect("our own scene").scene;
     let (layout, trace, _) = record(&scene, usize::MAX).expect("writing to memory");
-    let (mut reader, mut writer) = (Reader::of_slice(&trace, layout), Writer::new(Vec::new(), layout));
+    let (mut reader, mut writer) = (Reader::from_slice(&trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("our own recording is sound") {
         if reader.records() > 1 {
@@ -144,7 +144,7 @@ pub fn judge(bytes: &[u8]) {
     }
     let finite = |value: &f64| value.is_finite();
     if outcome.ruling(Book::Fair) == Ruling::Accepted {
-        let mut reader = Reader::of_slice(&trace, Layout::for_scene(&scene));
+        let mut reader = Reader::from_slice(&trace, Layout::for_scene(&scene));
         let mut frame = Frame::default();
         while reader.next(&mut frame).expect("what is accepted is sound") {
             assert!(frame.state.positions.iter().chain(&frame.state.velocities).all(finite), "no physics, no points");

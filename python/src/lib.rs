@@ -76,7 +76,7 @@ mod _native {
     ) -> PyResult<(Bound<'py, PyBytes>, Bound<'py, PyBytes>, Option<String>)> {
         let scene = read(name, &xml)?;
         let (positions, velocities, fault) = py.detach(|| {
-            let mut reader = Reader::of_slice(&trace, Layout::for_scene(&scene));
+            let mut reader = Reader::from_slice(&trace, Layout::for_scene(&scene));
             let (mut frame, mut positions, mut velocities) = (Frame::default(), Vec::new(), Vec::new());
             let fault = loop {
                 match reader.next(&mut frame) {

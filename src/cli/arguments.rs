@@ -1,8 +1,8 @@
 //! The command line as typed. What it means is decided by the commands.
 use super::{
-    grading::{Demo, Doctor, Grade, Merge, Selftest, Suite},
-    pictures::{DetectArguments, Render},
-    scenes::Scene,
+    grading::{DemoArguments, DoctorArguments, GradeArguments, MergeArguments, SelftestArguments, SuiteCommand},
+    pictures::{DetectArguments, RenderArguments},
+    scenes::SceneCommand,
     values::{TextOrJson, assignment, at_least_one, explaining, reader, rules},
 };
 use crate::{assignments::Assignment, judge::Rules, report::page::Audience, suite::config::Hints};
@@ -51,38 +51,38 @@ TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asse
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
-    Simulate(Simulate),
+    Simulate(SimulateArguments),
     /// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
     Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
-    Explain(Explain),
+    Explain(ExplainArguments),
     /// Makes the smallest scene on which a program is still wrong for the same reason.
-    Shrink(Shrink),
+    Shrink(ShrinkArguments),
     /// Computes one pair: polynomials, zeros, intervals, decision, time of impact, normal.
     Detect(Box<DetectArguments>),
     /// Draws a scene's motion: a picture per step, a GIF, or a movie.
-    Render(Box<Render>),
+    Render(Box<RenderArguments>),
     /// Shows what a trace holds, or one of its steps.
     #[command(subcommand)]
-    Trace(Trace),
+    Trace(TraceCommand),
     /// Records the traces of all scenes of a folder, or checks that they are still the same.
-    Record(Record),
+    Record(RecordArguments),
     /// Grades programs: runs them on a suite of scenes in a sandbox, and judges the traces that they leave.
-    Grade(Grade),
+    Grade(GradeArguments),
     /// Joins the parts that `grade --shard` graded into one grading.
-    Merge(Merge),
+    Merge(MergeArguments),
     /// Writes and explains suites: what is graded, with what limits and points.
     #[command(subcommand)]
-    Suite(Suite),
+    Suite(SuiteCommand),
     /// Lists the scenes that come with the program, prints one, or writes them into a folder.
     #[command(subcommand)]
-    Scene(Scene),
+    Scene(SceneCommand),
     /// Grades a right and a wrong sample program, to show how everything works.
-    Demo(Demo),
+    Demo(DemoArguments),
     /// Says which layers of the sandbox hold on this machine, and what to install.
-    Doctor(Doctor),
+    Doctor(DoctorArguments),
     /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
-    Selftest(Selftest),
+    Selftest(SelftestArguments),
     /// Runs a course's grading server, the program fosssim-server beside this one.
     Serve(ServeArguments),
     /// Writes the page that checks traces in any browser, with nothing installed.
@@ -90,11 +90,11 @@ pub(super) enum Command {
     /// Behaves as the original program: same flags, same output, same files, same exit codes.
     ///
     /// The same happens when the program is called under a name that starts with FOSSSimOracle.
-    Original(Original),
+    Original(OriginalArguments),
     /// Prints a completion script for a shell.
-    Completions(Completions),
+    Completions(CompletionsArguments),
     /// Prints the manual page, or that of a command.
-    Man(Man),
+    Man(ManArguments),
 }
 
 /// Returns the number of a step.
@@ -128,7 +128,7 @@ pub(super) enum ExplainFormat {
 
 /// The option of commands whose exit code, or whose file, is the answer.
 #[derive(Debug, Clone, Copy, Args)]
-pub(super) struct Quiet {
+pub(super) struct QuietArguments {
     /// Show no report, no warnings and no progress: errors only, and the exit code. Files are written all the same.
     #[arg(short, long)]
     pub(super) quiet: bool,
@@ -138,7 +138,7 @@ pub(super) struct Quiet {
 #[command(after_help = "\
 Example:
   fosssim-oracle simulate asset:ContinuousTimeTests/head-on-equal-masses --output reference.bin")]
-pub(super) struct Simulate {
+pub(super) struct SimulateArguments {
     /// The scene, a file or asset:Group/name.
     pub(super) scene: PathBuf,
     /// Where to write the trace; - for standard output. Without this option no trace is written.
@@ -151,7 +151,7 @@ pub(super) struct Simulate {
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
     #[command(flatten)]
-    pub(super) quiet: Quiet,
+    pub(super) quiet: QuietArguments,
 }
 
 #[derive(Debug, Args)]
@@ -195,7 +195,7 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     pub(super) audit: bool,
     #[command(flatten)]
-    pub(super) quiet: Quiet,
+    pub(super) quiet: QuietArguments,
 }
 
 #[derive(Debug, Args)]
@@ -208,7 +208,7 @@ Example:
 
 With --program, the program runs in the sandbox on small scenes that make every term of every formula visible. \
 The exit code is 0 when the fair rules accept everything, else 1.")]
-pub(super) struct Explain {
+pub(super) struct ExplainArguments {
     /// The scene and the trace; with --program, scenes to run besides the built-in ones.
     #[arg(value_name = "SCENE TRACE")]
     pub(super) inputs: Vec<PathBuf>,
@@ -239,7 +239,7 @@ pub(super) struct Explain {
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
     #[command(flatten)]
-    pub(super) quiet: Quiet,
+    pub(super) quiet: QuietArguments,
 }
 
 #[derive(Debug, Args)]
@@ -251,7 +251,7 @@ Example:
 
 The program runs in the sandbox. Without a scene there is one smallest scene for each cause; further ones go to \
 small-2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
-pub(super) struct Shrink {
+pub(super) struct ShrinkArguments {
     /// The program to run.
     pub(super) program: PathBuf,
     /// The scene to begin with, a file or asset:Group/name. By default the suite's, or small scenes of the milestone.
@@ -278,16 +278,16 @@ pub(super) struct Shrink {
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
     #[command(flatten)]
-    pub(super) quiet: Quiet,
+    pub(super) quiet: QuietArguments,
 }
 
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Example:
   fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
-pub(super) enum Trace {
-    Info(TraceInfo),
-    Show(TraceShow),
+pub(super) enum TraceCommand {
+    Info(TraceInfoArguments),
+    Show(TraceShowArguments),
 }
 
 /// Says what a trace holds, and where it is damaged.
@@ -295,7 +295,7 @@ pub(super) enum Trace {
 #[command(after_help = "\
 Example:
   fosssim-oracle trace info scenes/test00.xml submission.bin")]
-pub(super) struct TraceInfo {
+pub(super) struct TraceInfoArguments {
     /// The scene, which decides how the trace is to be read.
     pub(super) scene: PathBuf,
     /// The trace.
@@ -310,7 +310,7 @@ pub(super) struct TraceInfo {
 #[command(after_help = "\
 Example:
   fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
-pub(super) struct TraceShow {
+pub(super) struct TraceShowArguments {
     /// The scene, which decides how the trace is to be read.
     pub(super) scene: PathBuf,
     /// The trace.
@@ -331,7 +331,7 @@ Example:
 
 Scenes are read from ASSETS/<Group>/<name>.xml and ASSETS/<assignment>/<Group>/<name>.xml. REFERENCES gets the same \
 folders, with <name>.bin.zst, a digest per step in <name>.steps, and manifest.txt.")]
-pub(super) struct Record {
+pub(super) struct RecordArguments {
     /// Write nothing; simulate in memory, and fail with a diff when a byte differs. Without an assets folder this
     /// checks the scenes that come with the program.
     #[arg(long)]
@@ -343,7 +343,7 @@ pub(super) struct Record {
     #[arg(long, value_name = "DIR", default_value = "references")]
     pub(super) references: PathBuf,
     #[command(flatten)]
-    pub(super) quiet: Quiet,
+    pub(super) quiet: QuietArguments,
 }
 
 #[derive(Debug, Args)]
@@ -353,7 +353,7 @@ pub(super) struct Record {
 Example:
   fosssim-oracle original -s scenes/test00.xml -d 0 -i submission.bin"
 )]
-pub(super) struct Original {
+pub(super) struct OriginalArguments {
     /// The original's own flags; original --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "FLAGS")]
     pub(super) words: Vec<OsString>,
@@ -402,7 +402,7 @@ pub(super) struct PageArguments {
 #[command(after_help = "\
 Example:
   fosssim-oracle completions bash > ~/.local/share/bash-completion/completions/fosssim-oracle")]
-pub(super) struct Completions {
+pub(super) struct CompletionsArguments {
     /// The shell.
     pub(super) shell: Shell,
 }
@@ -414,7 +414,7 @@ Example:
   fosssim-oracle man trace show | man -l -
 
 The page refers to those of the commands: fosssim-oracle-trace-show(1) is what man trace show prints.")]
-pub(super) struct Man {
+pub(super) struct ManArguments {
     /// A command, such as check or trace show. Without it the page is about the program.
     pub(super) command: Vec<String>,
 }

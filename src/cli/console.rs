@@ -166,7 +166,7 @@ impl Bar {
 
     /// Returns a bar over this number of runs of a program, each of which may take long: shown at once, with the time
     /// that has passed.
-    pub(super) fn of_runs(runs: u64) -> Self {
+    pub(super) fn for_runs(runs: u64) -> Self {
         let bar = |runs| {
             let bar = add_bar(&show_bars(), runs, "{spinner} {elapsed}: run {pos} of {len}, {wide_msg}");
             bar.enable_steady_tick(TICK);

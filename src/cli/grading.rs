@@ -47,7 +47,7 @@ With --output, the folder keeps results as they come. (Several submissions alway
 An interrupted grading goes on where it stopped. A scene is run again only if the program, the scene or the rules \
 changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, scenes.csv, \
 class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part are no grade.")]
-pub(super) struct Grade {
+pub(super) struct GradeArguments {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
     pub(super) programs: Vec<PathBuf>,
@@ -127,7 +127,7 @@ pub(super) struct Grade {
     /// Grade only the I-th of N parts of the submissions, as one machine of several; `merge` joins the parts. Results
     /// go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
-    pub(super) shard: Option<Shard>,
+    pub(super) shard: Option<ShardArgument>,
     /// Print at the end where the processor time went: programs, sandbox, judging, explaining, reports.
     #[arg(long, conflicts_with_all = ["watch", "traces"])]
     pub(super) timings: bool,
@@ -146,14 +146,14 @@ pub(super) const MOST_SHARDS: usize = 10_000;
 
 /// A part of the submissions: the `number`-th of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Shard {
+pub(super) struct ShardArgument {
     /// The number of this part, from 1.
     pub(super) number: usize,
     /// The number of parts.
     pub(super) of: usize,
 }
 
-impl FromStr for Shard {
+impl FromStr for ShardArgument {
     type Err = &'static str;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
@@ -173,7 +173,7 @@ Example:
   fosssim-oracle merge grades
 
 All shards of one grading have to be there, each once. The exit code is that of the grading.")]
-pub(super) struct Merge {
+pub(super) struct MergeArguments {
     /// Folders of shards, or folders that hold them.
     #[arg(required = true)]
     pub(super) folders: Vec<PathBuf>,
@@ -194,10 +194,10 @@ pub(super) struct Merge {
 #[command(after_help = "\
 Example:
   fosssim-oracle suite init --output course.toml && fosssim-oracle suite check course.toml")]
-pub(super) enum Suite {
-    Init(SuiteInit),
-    Check(SuiteCheck),
-    List(SuiteList),
+pub(super) enum SuiteCommand {
+    Init(SuiteInitArguments),
+    Check(SuiteCheckArguments),
+    List(SuiteListArguments),
 }
 
 /// Prints a commented suite to start from.
@@ -205,7 +205,7 @@ pub(super) enum Suite {
 #[command(after_help = "\
 Example:
   fosssim-oracle suite init --output course.toml")]
-pub(super) struct SuiteInit {
+pub(super) struct SuiteInitArguments {
     #[arg(help = help_of_built_in())]
     pub(super) name: Option<String>,
 
@@ -220,7 +220,7 @@ pub(super) struct SuiteInit {
 Example:
   fosssim-oracle suite check course.toml
   fosssim-oracle suite check t1m3 --mistakes")]
-pub(super) struct SuiteCheck {
+pub(super) struct SuiteCheckArguments {
     /// The suite: a file, or one that comes with the program.
     pub(super) suite: String,
     /// Also list the pairs of properties that no step of its scenes has.
@@ -236,7 +236,7 @@ pub(super) struct SuiteCheck {
 #[command(after_help = "\
 Example:
   fosssim-oracle suite list --format json")]
-pub(super) struct SuiteList {
+pub(super) struct SuiteListArguments {
     /// How the list is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
@@ -247,7 +247,7 @@ pub(super) struct SuiteList {
 Example:
   fosssim-oracle demo
   fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
-pub(super) struct Demo {
+pub(super) struct DemoArguments {
     /// The sample program; by default fosssim-sample beside this program.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) sample: Option<PathBuf>,
@@ -266,13 +266,13 @@ pub(super) struct Demo {
 #[command(after_help = "\
 Example:
   fosssim-oracle doctor")]
-pub(super) struct Doctor {}
+pub(super) struct DoctorArguments {}
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle selftest")]
-pub(super) struct Selftest {
+pub(super) struct SelftestArguments {
     /// The C compiler that builds the hostile programs.
     #[arg(long, value_name = "PROGRAM", default_value = "cc")]
     pub(super) compiler: String,

@@ -1,5 +1,5 @@
 //! The parts of this program that the drop-in for the original asks for: pictures.
-use crate::original::{NO_PICTURE_FOLDER, Outside, Pictures};
+use crate::original::{NO_PICTURE_FOLDER, Pictures, Services};
 use crate::{
     cli::output::Folder,
     render::{Extent, Painter, PictureOptions, Raster, Size, film::png, svg},
@@ -18,7 +18,7 @@ const SIDE: u32 = 512;
 /// This program.
 pub(super) struct Program;
 
-impl Outside for Program {
+impl Services for Program {
     fn prepare(&self) {
         sandbox::let_large_writes_fail();
     }

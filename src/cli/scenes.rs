@@ -6,10 +6,10 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Example:
   fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
-pub(super) enum Scene {
-    List(SceneList),
-    Show(SceneShow),
-    Export(SceneExport),
+pub(super) enum SceneCommand {
+    List(SceneListArguments),
+    Show(SceneShowArguments),
+    Export(SceneExportArguments),
 }
 
 /// Lists the scenes that come with the program, with a line on each.
@@ -18,7 +18,7 @@ pub(super) enum Scene {
 Example:
   fosssim-oracle scene list
   fosssim-oracle scene list 'Geometric*'")]
-pub(super) struct SceneList {
+pub(super) struct SceneListArguments {
     /// Only scenes of these names, such as 'GeometricTests/*'.
     #[arg(value_name = "GLOB")]
     pub(super) patterns: Vec<String>,
@@ -32,7 +32,7 @@ pub(super) struct SceneList {
 #[command(after_help = "\
 Example:
   fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
-pub(super) struct SceneShow {
+pub(super) struct SceneShowArguments {
     /// The scene, Group/name or asset:Group/name.
     #[arg(value_name = "SCENE")]
     pub(super) name: String,
@@ -46,7 +46,7 @@ Example:
   fosssim-oracle scene export 'HolisticTests/*' --output scenes
 
 A file that holds something else is left alone and named, unless --force is given.")]
-pub(super) struct SceneExport {
+pub(super) struct SceneExportArguments {
     /// Only scenes of these names, such as 'GeometricTests/*'. Without any, all of them.
     #[arg(value_name = "GLOB")]
     pub(super) patterns: Vec<String>,

@@ -30,7 +30,7 @@ fn reports(scene: &str, trace: &[u8]) -> (Run, Value) {
 fn changed(scene: &str, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     let layout = Layout::for_scene(&scene::read("scene", scene.as_bytes()).unwrap().scene);
     let trace = trace_of(scene);
-    let mut reader = Reader::of_slice(&trace, layout);
+    let mut reader = Reader::from_slice(&trace, layout);
     let mut frames = Vec::new();
     let mut frame = Frame::default();
     while reader.next(&mut frame).unwrap() {

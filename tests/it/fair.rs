@@ -132,7 +132,7 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
     let (_, scene) = scenes.iter().find(|(name, _)| name == "ContinuousTimeTests/spinning-edge-sweeps-balls").unwrap();
     let layout = Layout::for_scene(scene);
     let trace = simulated(scene, None).unwrap();
-    let mut reader = Reader::of_slice(&trace, layout);
+    let mut reader = Reader::from_slice(&trace, layout);
     let mut writer = Writer::new(Vec::new(), layout);
     let (mut frame, mut number) = (Frame::default(), 0);
     while reader.next(&mut frame).unwrap() {

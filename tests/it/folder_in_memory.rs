@@ -1,7 +1,7 @@
 //! A working folder that lies in memory: what the kernel limits there, and what the grader gets of it.
 use crate::sandbox::{backend, small};
 use fosssim_oracle::sandbox::{
-    Backend, Ended, Job, Layer, LeftFolder, Limits, Policy, RunOutcome, collect::OpenFolder,
+    Backend, Job, Layer, LeftFolder, Limits, Policy, RunEnd, RunOutcome, collect::OpenFolder,
 };
 use fosssim_testing::{Need, skip};
 use std::io::Read;
@@ -39,7 +39,7 @@ fn what_a_program_leaves_is_handed_over_and_its_folder_stays_as_it_was() {
     let folder = tempfile::tempdir().unwrap();
     let job = job(folder.path(), "mkdir out && cat input input > out/made && rm input && ln -s /etc/passwd link");
     let (outcome, left) = run(backend, &job);
-    assert_eq!(outcome.ended, Ended::Exited(0));
+    assert_eq!(outcome.ended, RunEnd::Exited(0));
     let left = left.in_memory().expect("the folder");
     assert_eq!(text(left, "out/made"), "givengiven");
     assert!(left.regular_file("input", 1000).is_err() && left.regular_file("link", 1000).is_err());
@@ -60,7 +60,7 @@ fn a_jobs_files_lie_where_its_program_works_and_nowhere_else() {
     for _ in 0..2 {
         let (outcome, left) = run(backend, &read(folder.path()).folder_in_memory());
         assert_eq!(String::from_utf8_lossy(&outcome.stdout.bytes), sizes);
-        assert_eq!((outcome.ended, left.in_memory().is_some()), (Ended::Exited(0), true));
+        assert_eq!((outcome.ended, left.in_memory().is_some()), (RunEnd::Exited(0), true));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
     // Build tools, and folders on the disk.
@@ -83,7 +83,7 @@ fn the_kernel_itself_refuses_more_than_the_folder_may_hold() {
     let script = "for i in 1 2 3 4 5 6 7 8 9 10; do head -c 4000000 /dev/zero | tr '\\0' x > f$i; done; sleep 1000";
     let limits = Limits { memory: 256 << 20, ..small() };
     let (outcome, left) = run(backend, &job(folder.path(), script).limits(limits));
-    assert_eq!(outcome.ended, Ended::FolderLimit);
+    assert_eq!(outcome.ended, RunEnd::FolderLimit);
     let left = left.in_memory().expect("the folder");
     let bytes: u64 =
         left.names().unwrap().iter().filter_map(|name| Some(left.path().join(name).metadata().ok()?.len())).sum();
@@ -98,7 +98,7 @@ fn files_of_the_folder_are_not_the_programs_memory() {
     let limits = Limits { memory: 32 << 20, folder_bytes: 80 << 20, ..small() };
     let script = "head -c 60000000 /dev/zero | tr '\\0' x > file && wc -c < file";
     let (outcome, _) = run(backend, &job(folder.path(), script).limits(limits));
-    assert_eq!(outcome.ended, Ended::Exited(0), "{outcome:?}");
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "{outcome:?}");
     assert_eq!(String::from_utf8_lossy(&outcome.stdout.bytes).trim(), "60000000");
     assert!(outcome.peak_memory < 32 << 20, "{}", outcome.peak_memory);
 }
@@ -111,7 +111,7 @@ fn a_trace_lies_in_memory_too() {
     let (outcome, left) = run(backend, &job);
     let mut trace = Vec::new();
     left.regular_file("trace.bin", 10).unwrap().0.read_to_end(&mut trace).unwrap();
-    assert_eq!((outcome.ended, trace.as_slice()), (Ended::Exited(0), &b"givengiven"[..]));
+    assert_eq!((outcome.ended, trace.as_slice()), (RunEnd::Exited(0), &b"givengiven"[..]));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "nothing came to the disk");
     assert!(backend.start(&job.trace("../trace.bin")).is_err());
 }
@@ -128,7 +128,7 @@ fn without_namespaces_or_room_the_folder_is_used_as_it_lies() {
     let huge = Limits { folder_bytes: 1 << 50, ..small() };
     for (backend, job) in [(&bare, job.clone()), (backend, job.limits(huge))] {
         let (outcome, left) = run(backend, &job);
-        assert_eq!(outcome.ended, Ended::Exited(0));
+        assert_eq!(outcome.ended, RunEnd::Exited(0));
         assert!(left.in_memory().is_none());
         assert_eq!(std::fs::read_to_string(folder.path().join("made")).unwrap(), "given");
         std::fs::remove_file(folder.path().join("made")).unwrap();

@@ -2,7 +2,7 @@
 use crate::folder_in_memory::with_namespaces;
 use crate::sandbox::deaths::{eventually, kill, process};
 use crate::sandbox::small;
-use fosssim_oracle::sandbox::{Backend, Ended, Job, Limits, RunningProgram, Supervisor};
+use fosssim_oracle::sandbox::{Backend, Job, Limits, RunEnd, RunningProgram, Supervisor};
 use std::{fs, os::unix::fs::PermissionsExt, path::Path};
 
 /// Waits a moment, so that it can be looked at; then it ends by itself. Every test has another moment, by which its
@@ -35,7 +35,7 @@ impl Bench {
     }
 }
 
-fn finish(running: RunningProgram) -> Ended {
+fn finish(running: RunningProgram) -> RunEnd {
     running.wait().expect("an outcome").ended
 }
 
@@ -54,18 +54,18 @@ fn runs_of_one_submission_share_a_keeper_until_one_is_stopped() {
         (bench.family(), running)
     };
     let ([first, supervisor, keeper], running) = run(small());
-    assert_eq!(finish(running), Ended::Exited(0));
+    assert_eq!(finish(running), RunEnd::Exited(0));
     let ([second, another, same], running) = run(small());
     assert!(same == keeper && another != supervisor && second != first, "a fresh supervisor under the same keeper");
-    assert_eq!(finish(running), Ended::Exited(0));
+    assert_eq!(finish(running), RunEnd::Exited(0));
     let others = || Limits { processes: 17, ..small() };
     let ([.., with_other_limits], running) = run(others());
     assert_ne!(with_other_limits, keeper);
     running.canceller().cancel();
-    assert_eq!(running.wait().unwrap().ended, Ended::Cancelled);
+    assert_eq!(running.wait().unwrap().ended, RunEnd::Cancelled);
     let ([.., after_a_stop], running) = run(others());
     assert_ne!(after_a_stop, with_other_limits);
-    assert_eq!(finish(running), Ended::Exited(0));
+    assert_eq!(finish(running), RunEnd::Exited(0));
     drop(backend);
     assert!(!Path::new(&format!("/proc/{after_a_stop}")).exists(), "it goes with its backend");
 }
@@ -80,7 +80,7 @@ fn a_run_finds_nothing_of_the_one_before_it() {
     fs::write(&program, script).unwrap();
     fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).unwrap();
     fs::set_permissions(submission.path(), fs::Permissions::from_mode(0o755)).unwrap();
-    let seen: Vec<(Ended, String, String)> = (0..3)
+    let seen: Vec<(RunEnd, String, String)> = (0..3)
         .map(|number| {
             let folder = tempfile::tempdir().unwrap();
             fs::write(folder.path().join("scene.xml"), number.to_string()).unwrap();
@@ -109,7 +109,7 @@ fn a_run_is_told_its_own_processor_time_alone() {
         let folder = tempfile::tempdir().unwrap();
         let job = Job::new(&program, folder.path()).arguments([word]).folder_in_memory().limits(small());
         let outcome = backend.start(&job).unwrap().wait().unwrap();
-        assert_eq!(outcome.ended, Ended::Exited(0));
+        assert_eq!(outcome.ended, RunEnd::Exited(0));
         outcome.cpu
     };
     let (long, short) = (cpu("long"), cpu("short"));
@@ -147,11 +147,11 @@ fn walls_stand_for_every_run_of_a_keeper() {
         };
         let (fresh, used) = (alone().unwrap(), alone().unwrap());
         let first = run(&fresh, attack);
-        assert_eq!(run(&used, "nothing").0, Ended::Exited(0));
+        assert_eq!(run(&used, "nothing").0, RunEnd::Exited(0));
         assert_eq!(run(&used, attack), first, "{attack}");
         let shown = String::from_utf8_lossy(&first.1);
         assert!(!["secret", "root", "forked"].iter().any(|word| shown.contains(word)), "{attack}: {shown}");
-        let stopped = !matches!(first.0, Ended::Exited(_));
+        let stopped = !matches!(first.0, RunEnd::Exited(_));
         assert_eq!(stopped, ["fork", "execute", "files", "flood", "spin"].contains(&attack), "{attack}: {:?}", first.0);
     }
     assert!(!secret.path().join("made").exists() && !Path::new("/tmp/made").exists());
@@ -168,6 +168,6 @@ fn who_loses_a_keeper_or_a_supervisor_says_so_and_the_next_run_has_others() {
         let error = running.wait().expect_err("a loss").to_string();
         assert!(error.contains("lost"), "{error}");
         eventually(|| bench.process().is_none().then_some(()));
-        assert_eq!(finish(bench.start(&backend, small())), Ended::Exited(0));
+        assert_eq!(finish(bench.start(&backend, small())), RunEnd::Exited(0));
     }
 }

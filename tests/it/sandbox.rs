@@ -15,7 +15,7 @@ use std::time::Duration;
 use fosssim_testing::{Need, skip};
 
 use fosssim_oracle::sandbox::{
-    Backend, Ended, Job, Layer, Limits, Policy, RunOutcome, StartProblem, Supervisor, collect,
+    Backend, Job, Layer, Limits, Policy, RunEnd, RunOutcome, StartProblem, Supervisor, collect,
 };
 
 /// The sandbox under the real binary; tests without the required walls are skipped with a line.
@@ -79,7 +79,7 @@ fn text(bytes: &[u8]) -> &str {
 fn an_ordinary_program_runs_and_its_words_are_kept() {
     let Some(bench) = Bench::new() else { return };
     let outcome = bench.run("/bin/echo", &["hello", "two  words"]);
-    assert_eq!(outcome.ended, Ended::Exited(0));
+    assert_eq!(outcome.ended, RunEnd::Exited(0));
     assert_eq!(text(&outcome.stdout.bytes), "hello two  words\n");
     assert!(outcome.wall > Duration::ZERO && outcome.peak_memory > 100_000);
     let active = |layer| outcome.layers.iter().any(|report| report.layer == layer && report.active);
@@ -90,9 +90,9 @@ fn an_ordinary_program_runs_and_its_words_are_kept() {
 fn exit_codes_and_own_signals_are_told_apart() {
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 3\n");
-    assert_eq!(bench.run(&program, &[]).ended, Ended::Exited(3));
+    assert_eq!(bench.run(&program, &[]).ended, RunEnd::Exited(3));
     let program = bench.script("#!/bin/sh\nkill -SEGV $$\n");
-    assert_eq!(bench.run(&program, &[]).ended, Ended::Signalled(11));
+    assert_eq!(bench.run(&program, &[]).ended, RunEnd::Signalled(11));
 }
 
 #[test]
@@ -110,11 +110,11 @@ fn sleepers_and_spinners_meet_their_limits() {
     let Some(bench) = Bench::new() else { return };
     let limits = Limits { wall: Duration::from_millis(200), ..small() };
     let outcome = bench.finish(&bench.job("/bin/sleep", &["1000"]).limits(limits));
-    assert_eq!(outcome.ended, Ended::WallLimit);
+    assert_eq!(outcome.ended, RunEnd::WallLimit);
     assert!(outcome.cpu < Duration::from_millis(200));
     let program = bench.script("#!/bin/sh\nwhile :; do :; done\n");
     let outcome = bench.run(&program, &[]);
-    assert_eq!(outcome.ended, Ended::CpuLimit);
+    assert_eq!(outcome.ended, RunEnd::CpuLimit);
     assert!(outcome.cpu >= Duration::from_millis(490));
 }
 
@@ -122,11 +122,11 @@ fn sleepers_and_spinners_meet_their_limits() {
 fn a_flood_is_cut_to_the_byte() {
     let Some(bench) = Bench::new() else { return };
     let outcome = bench.run("/usr/bin/yes", &[]);
-    assert_eq!(outcome.ended, Ended::CpuLimit);
+    assert_eq!(outcome.ended, RunEnd::CpuLimit);
     assert!(outcome.stdout.truncated && outcome.stdout.bytes.len() == 10_000);
     let program = bench.script("#!/bin/sh\nhead -c 3000000 /dev/zero\nhead -c 3000000 /dev/zero >&2\n");
     let outcome = bench.finish(&bench.job(&program, &[]).policy(Policy::Tools));
-    assert_eq!(outcome.ended, Ended::Exited(0), "who prints too much is heard no more, and goes on");
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "who prints too much is heard no more, and goes on");
     assert!(outcome.stderr.truncated && outcome.stderr.bytes.len() == 10_000);
 }
 
@@ -136,7 +136,7 @@ fn a_trace_without_end_is_stopped_at_its_limit() {
     let program = bench.script("#!/bin/sh\nexec yes > trace.bin\n");
     let job = bench.job(&program, &[]).trace("trace.bin").policy(Policy::Tools);
     let (outcome, left) = bench.backend.start(&job).unwrap().wait_with_folder().unwrap();
-    assert_eq!(outcome.ended, Ended::TraceLimit);
+    assert_eq!(outcome.ended, RunEnd::TraceLimit);
     let (_, length) = left.regular_file("trace.bin", u64::MAX).unwrap();
     assert!(length > small().trace_bytes && length <= small().folder_bytes, "{length}");
 }
@@ -151,9 +151,9 @@ fn a_trace_may_be_longer_than_all_else_in_the_folder() {
         bench.job(&program, &[]).trace("trace.bin").policy(Policy::Tools).limits(limits)
     };
     let (outcome, left) = bench.backend.start(&job(3_000_000)).unwrap().wait_with_folder().unwrap();
-    assert_eq!(outcome.ended, Ended::Exited(0));
+    assert_eq!(outcome.ended, RunEnd::Exited(0));
     assert_eq!(left.regular_file("trace.bin", u64::MAX).unwrap().1, 3_000_000);
-    assert_eq!(bench.finish(&job(2_999_999)).ended, Ended::TraceLimit);
+    assert_eq!(bench.finish(&job(2_999_999)).ended, RunEnd::TraceLimit);
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn a_refused_request_for_memory_is_the_memory_limit() {
         skip(Need::Cxx, "there is no C++ compiler (c++)");
         return;
     }
-    assert_eq!(bench.run(&program, &[]).ended, Ended::MemoryLimit);
+    assert_eq!(bench.run(&program, &[]).ended, RunEnd::MemoryLimit);
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn a_run_can_be_cancelled_and_dropped() {
     let job = bench.job("/bin/sleep", &["1000"]).trace("trace.bin");
     let running = bench.backend.start(&job).unwrap();
     running.canceller().cancel();
-    assert_eq!(running.wait().unwrap().ended, Ended::Cancelled);
+    assert_eq!(running.wait().unwrap().ended, RunEnd::Cancelled);
     // The drop ends the sleeper: it would otherwise wait for a thousand seconds.
     drop(bench.backend.start(&job).unwrap());
 }
@@ -185,10 +185,10 @@ fn a_run_can_be_cancelled_and_dropped() {
 fn a_submission_starts_no_process_and_no_second_program() {
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\n/bin/ls | /bin/cat\n");
-    let Ended::Violation { call } = bench.run(&program, &[]).ended else { panic!("it may not fork") };
+    let RunEnd::Violation { call } = bench.run(&program, &[]).ended else { panic!("it may not fork") };
     assert!(call.contains("process"), "{call}");
     let outcome = bench.finish(&bench.job(&program, &[]).policy(Policy::Tools));
-    assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "{}", text(&outcome.stderr.bytes));
     assert_eq!(text(&outcome.stdout.bytes), "program\n");
 }
 
@@ -201,7 +201,7 @@ fn a_script_in_another_language_runs_as_one_program() {
     }
     let program = bench.script("#!/usr/bin/env python3\nprint(6 * 7)\n");
     let outcome = bench.run(&program, &[]);
-    assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "{}", text(&outcome.stderr.bytes));
     assert_eq!(text(&outcome.stdout.bytes), "42\n");
 }
 
@@ -214,7 +214,7 @@ fn readable_paths_are_readable_and_others_are_not() {
     std::fs::write(&scene, "<scene/>").unwrap();
     let scene = scene.to_str().unwrap();
     let refused = bench.run("/bin/cat", &[scene]);
-    assert_eq!(refused.ended, Ended::Exited(1));
+    assert_eq!(refused.ended, RunEnd::Exited(1));
     let why = text(&refused.stderr.bytes);
     // In a world of its own the file is not even there.
     assert!(why.contains("ermission denied") || why.contains("o such file"), "{why}");
@@ -261,16 +261,16 @@ fn the_folders_size_and_files_are_bounded() {
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexec yes > big\n");
     let tools = |program: &Path| bench.job(program, &[]).policy(Policy::Tools);
-    assert_eq!(bench.finish(&tools(&program)).ended, Ended::FolderLimit);
+    assert_eq!(bench.finish(&tools(&program)).ended, RunEnd::FolderLimit);
     let program = bench.script("#!/bin/sh\nrm -f big\ni=0; while :; do i=$((i+1)); : > f$i; done\n");
-    assert_eq!(bench.finish(&tools(&program)).ended, Ended::FolderLimit);
+    assert_eq!(bench.finish(&tools(&program)).ended, RunEnd::FolderLimit);
 }
 
 #[test]
 fn programs_that_cannot_start_are_explained() {
     let Some(bench) = Bench::new() else { return };
     let problem = |program: &Path| match bench.run(program, &[]).ended {
-        Ended::CouldNotStart(problem) => problem,
+        RunEnd::CouldNotStart(problem) => problem,
         other => panic!("{other:?}"),
     };
     assert_eq!(problem(Path::new("/no/such/program")), StartProblem::NotFound);
@@ -282,7 +282,7 @@ fn programs_that_cannot_start_are_explained() {
     let open = std::fs::OpenOptions::new().append(true).open(&copy).unwrap();
     assert_eq!(problem(&copy), StartProblem::Busy);
     drop(open);
-    assert_eq!(bench.run(&copy, &[]).ended, Ended::Exited(0));
+    assert_eq!(bench.run(&copy, &[]).ended, RunEnd::Exited(0));
     let program = bench.script("#!/bin/sh\necho \"freeglut: failed to open display ''\" >&2; exit 1\n");
     assert_eq!(problem(&program), StartProblem::NeedsDisplay);
 }
@@ -295,7 +295,7 @@ fn a_program_that_only_its_owner_may_execute_runs_all_the_same() {
     std::fs::copy("/bin/echo", &program).unwrap();
     std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o700)).unwrap();
     let outcome = bench.run(&program, &["here"]);
-    assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "{}", text(&outcome.stderr.bytes));
     assert_eq!(text(&outcome.stdout.bytes), "here\n");
 }
 
@@ -305,7 +305,7 @@ fn the_folder_is_the_graders_again_when_the_run_is_over() {
     use std::os::unix::fs::MetadataExt;
     let program = bench.script("#!/bin/sh\necho result > out.txt\n");
     let owner = bench.folder.path().metadata().unwrap().uid();
-    assert_eq!(bench.run(&program, &[]).ended, Ended::Exited(0));
+    assert_eq!(bench.run(&program, &[]).ended, RunEnd::Exited(0));
     let (mut file, _) = collect::OpenFolder::open(bench.folder.path()).unwrap().regular_file("out.txt", 100).unwrap();
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).unwrap();
@@ -344,7 +344,7 @@ fn a_missing_library_is_named() {
     let source = "int course(void); int main(void) { return course(); }";
     let Some(program) = compiled(folder.path(), source, &["-L.", "-lcourse"]) else { return };
     let missing = StartProblem::MissingLibrary { library: "libcourse.so".into() };
-    assert_eq!(bench.run(program, &[]).ended, Ended::CouldNotStart(missing));
+    assert_eq!(bench.run(program, &[]).ended, RunEnd::CouldNotStart(missing));
 }
 
 #[test]
@@ -363,7 +363,7 @@ fn a_loader_that_is_not_the_systems_is_the_programs_fault() {
             let Ok(backend) = backend else { continue };
             let job = bench.job(&program, &["--version"]).folder_in_memory();
             let ended = backend.start(&job).unwrap().wait().unwrap().ended;
-            assert_eq!(ended, Ended::CouldNotStart(StartProblem::MissingLoader {}), "{loader}");
+            assert_eq!(ended, RunEnd::CouldNotStart(StartProblem::MissingLoader {}), "{loader}");
         }
     }
 }
@@ -375,10 +375,10 @@ fn a_sanitized_program_runs_and_its_memory_is_limited_all_the_same() {
                   int size = atoi(words[1]); memset(malloc(size), 1, size); return 0; }";
     let Some(program) = compiled(bench.folder.path(), source, &["-fsanitize=address"]) else { return };
     let unasked = bench.run(&program, &["1000"]).ended;
-    assert_eq!(unasked, Ended::CouldNotStart(StartProblem::Sanitized), "only by the suite's own word");
+    assert_eq!(unasked, RunEnd::CouldNotStart(StartProblem::Sanitized), "only by the suite's own word");
     let run = |size| bench.finish(&bench.job(&program, &[size]).sanitizers(true)).ended;
-    assert_eq!(run("1000"), Ended::Exited(0));
-    assert_eq!(run("200000000"), Ended::MemoryLimit);
+    assert_eq!(run("1000"), RunEnd::Exited(0));
+    assert_eq!(run("200000000"), RunEnd::MemoryLimit);
 }
 
 #[test]
@@ -396,15 +396,15 @@ fn a_build_step_compiles_a_program_in_the_sandbox() {
             return;
         }
         let outcome = bench.finish(&job.policy(Policy::Tools).limits(limits.clone()));
-        assert_eq!(outcome.ended, Ended::Exited(0), "{}", text(&outcome.stderr.bytes));
+        assert_eq!(outcome.ended, RunEnd::Exited(0), "{}", text(&outcome.stderr.bytes));
         let built = bench.folder.path().join("built");
-        assert_eq!(bench.run(&built, &[]).ended, Ended::Exited(0));
+        assert_eq!(bench.run(&built, &[]).ended, RunEnd::Exited(0));
         std::fs::remove_file(built).unwrap();
     }
     std::fs::write(bench.folder.path().join("source.c"), "int main(void) { return nothing; }").unwrap();
     let job = bench.job("/usr/bin/cc", &["-o", "built", "source.c"]).policy(Policy::Tools).limits(limits);
     let outcome = bench.finish(&job);
-    assert_eq!(outcome.ended, Ended::Exited(1));
+    assert_eq!(outcome.ended, RunEnd::Exited(1));
     assert!(text(&outcome.stderr.bytes).contains("nothing"));
 }
 
@@ -421,13 +421,13 @@ fn without_the_required_walls_the_limits_and_all_other_walls_still_hold() {
     let limits = Limits { wall: Duration::from_millis(200), ..small() };
     let job = Job::new("/bin/sleep", bench_folder.path()).arguments(["1000"]).limits(limits);
     let outcome = backend.start(&job).unwrap().wait().unwrap();
-    assert_eq!(outcome.ended, Ended::WallLimit);
+    assert_eq!(outcome.ended, RunEnd::WallLimit);
     assert!(outcome.layers.iter().any(|report| report.layer == Layer::CallFilter && report.active));
     // Eight sleepers where four processes are allowed.
     let script = "for i in 1 2 3 4 5 6 7 8; do sleep 1000 & done; wait";
     let limits = Limits { processes: 4, ..small() };
     let job = Job::new("/bin/sh", bench_folder.path()).arguments(["-c", script]).limits(limits).policy(Policy::Tools);
-    assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, Ended::ProcessLimit);
+    assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, RunEnd::ProcessLimit);
 }
 
 #[test]
@@ -442,22 +442,22 @@ fn a_program_cannot_have_the_grader_run_in_its_place() {
         "#!/proc/self/exe --version\n".into(),
     ] {
         let ended = bench.run(bench.script(&line), &[]).ended;
-        let Ended::CouldNotStart(StartProblem::NotTheSystems { .. }) = ended else { panic!("{line}: {ended:?}") };
+        let RunEnd::CouldNotStart(StartProblem::NotTheSystems { .. }) = ended else { panic!("{line}: {ended:?}") };
     }
     for text in
         [format!("#!/bin/sh\nexec {grader} --version\n"), format!("#!/usr/bin/env sh\nexec {grader} --version\n")]
     {
         let outcome = bench.run(bench.script(&text), &[]);
-        assert!(outcome.ended != Ended::Exited(0) && outcome.stdout.bytes.is_empty(), "{text}: {outcome:?}");
+        assert!(outcome.ended != RunEnd::Exited(0) && outcome.stdout.bytes.is_empty(), "{text}: {outcome:?}");
     }
-    assert_eq!(bench.run(grader, &["--version"]).ended, Ended::CouldNotStart(StartProblem::GradersOwn));
+    assert_eq!(bench.run(grader, &["--version"]).ended, RunEnd::CouldNotStart(StartProblem::GradersOwn));
     let link = bench.folder.path().join("link");
     std::os::unix::fs::symlink(grader, &link).unwrap();
-    assert_eq!(bench.run(link, &["--version"]).ended, Ended::CouldNotStart(StartProblem::GradersOwn));
+    assert_eq!(bench.run(link, &["--version"]).ended, RunEnd::CouldNotStart(StartProblem::GradersOwn));
     // Not even a folder that it may read shows it the grader.
     let beside = Path::new(grader).parent().unwrap();
     let outcome = bench.finish(&bench.job("/bin/cat", &[grader]).readable([beside]).policy(Policy::Tools));
-    assert!(outcome.ended != Ended::Exited(0) && outcome.stdout.bytes.is_empty(), "it read the grader");
+    assert!(outcome.ended != RunEnd::Exited(0) && outcome.stdout.bytes.is_empty(), "it read the grader");
 }
 
 #[test]
@@ -477,12 +477,12 @@ fn a_script_is_read_by_its_interpreter_and_executes_nothing_else() {
     let script = bench.script(&format!("#!/bin/sh\nexec {loader} /bin/echo run\n"));
     for backend in [bench.backend.clone(), bench.backend.without(Layer::NamedCalls).unwrap()] {
         let outcome = backend.start(&bench.job(&script, &[])).unwrap().wait().unwrap();
-        assert!(matches!(outcome.ended, Ended::Violation { .. }), "{:?}", outcome.ended);
+        assert!(matches!(outcome.ended, RunEnd::Violation { .. }), "{:?}", outcome.ended);
         let plain = bench.folder.path().join("plain");
         std::fs::write(&plain, "#!/usr/bin/env -S VALUE=7 sh -e\necho \"$VALUE $1\"\nfalse\necho more\n").unwrap();
         std::fs::set_permissions(&plain, std::fs::Permissions::from_mode(0o755)).unwrap();
         let outcome = backend.start(&bench.job(&plain, &["one two"])).unwrap().wait().unwrap();
-        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (Ended::Exited(1), "7 one two\n"));
+        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (RunEnd::Exited(1), "7 one two\n"));
     }
 }
 
@@ -508,7 +508,7 @@ fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 0\n");
     let job = bench.job(&program, &[]).staged(ProgramIdentity::from_path(&program));
-    assert_eq!(bench.finish(&job).ended, Ended::Exited(0));
+    assert_eq!(bench.finish(&job).ended, RunEnd::Exited(0));
     std::fs::write(&program, "#!/bin/sh\nexit 1\n").unwrap();
     let changed = bench.backend.start(&job).unwrap_err();
     assert!(changed.to_string().contains("changed or removed"), "{changed}");

@@ -71,10 +71,10 @@ fn rewrite(mut reader: Reader<impl std::io::Read>) -> Result<Vec<u8>, TraceError
 
 /// Reads with both readers; whatever the bytes are, the memory stays in proportion to them.
 fn read_anything(layout: Layout, bytes: &[u8]) -> Result<(), TestCaseError> {
-    let known = rewrite(Reader::of_slice(bytes, layout));
+    let known = rewrite(Reader::from_slice(bytes, layout));
     let unknown = rewrite(Reader::new(bytes, layout));
     prop_assert_eq!(&known, &unknown, "the known length makes no difference");
-    let mut lenient = Lenient::of_slice(bytes, layout);
+    let mut lenient = Lenient::from_slice(bytes, layout);
     let mut frame = LenientFrame::default();
     for record in 0..layout.records() {
         let Err(stop) = lenient.next(&mut frame) else { continue };
@@ -98,7 +98,7 @@ proptest! {
         let mut bytes = write(layout, &frames);
         let sound = bytes.len();
         bytes.extend_from_slice(&trailing);
-        prop_assert_eq!(&rewrite(Reader::of_slice(&bytes, layout)).unwrap(), &bytes[..sound]);
+        prop_assert_eq!(&rewrite(Reader::from_slice(&bytes, layout)).unwrap(), &bytes[..sound]);
         let mut reader = Reader::new(&bytes[..], layout).keeping_raw();
         let (mut frame, mut raw) = (Frame::default(), Vec::new());
         while reader.next(&mut frame).unwrap() {
@@ -177,7 +177,7 @@ fn every_cut_of_a_small_trace_is_named() {
     // Blocks of a later record: state 32, count 4, impulse 36, count 4, polynomials 28 and 12.
     assert_eq!(bytes.len(), 40 + 2 * 116);
     for cut in 0..bytes.len() {
-        let error = rewrite(Reader::of_slice(&bytes[..cut], layout)).unwrap_err();
+        let error = rewrite(Reader::from_slice(&bytes[..cut], layout)).unwrap_err();
         let record = if cut < 40 { 0 } else { 1 + (cut as u64 - 40) / 116 };
         let begin = if record == 0 { 0 } else { 40 + 116 * (record - 1) };
         let inside = cut as u64 - begin;
@@ -209,7 +209,7 @@ fn oddities_are_noted_and_read_over() {
     let (layout, mut bytes) = small();
     bytes[40 + 36] = 7;
     bytes[156 + 40] = 9;
-    let mut reader = Reader::of_slice(&bytes, layout);
+    let mut reader = Reader::from_slice(&bytes, layout);
     let mut frame = Frame::default();
     let mut notes = Vec::new();
     while reader.next(&mut frame).unwrap() {
@@ -223,7 +223,7 @@ fn oddities_are_noted_and_read_over() {
 fn negative_counts_are_refused() {
     let (layout, mut bytes) = small();
     bytes[40 + 35] = 0xff;
-    let error = rewrite(Reader::of_slice(&bytes, layout)).unwrap_err();
+    let error = rewrite(Reader::from_slice(&bytes, layout)).unwrap_err();
     let count = i32::from_le_bytes([1, 0, 0, 0xff]);
     assert_eq!((error.offset, error.what), (72, Malformation::NegativeCount { list: List::Impulses, count }));
 }
@@ -328,7 +328,7 @@ fn lenient_reading_stops_where_the_original_stopped() {
         let end = row["oracle_end"].as_str().unwrap();
         let bytes = corpus::unpack(&folder.join(file));
         let layout = layout(row["scene"].as_str().unwrap());
-        let mut reader = Lenient::of_slice(&bytes, layout);
+        let mut reader = Lenient::from_slice(&bytes, layout);
         let mut frame = LenientFrame::default();
         let stop = (0..layout.records()).find_map(|_| reader.next(&mut frame).err());
         let said = |text: &str| row["stdout"].as_str().unwrap().contains(text);

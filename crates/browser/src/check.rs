@@ -72,7 +72,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     if request.html {
         let mut again = (!examined.trace.is_whole()).then(|| opened(host, request.file, &fault));
         let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::BUDGET);
-        parts.push(page::of_examined(check, &examined, &evidence).into_bytes());
+        parts.push(page::examined_page(check, &examined, &evidence).into_bytes());
     }
     let value = json!({
         "accepted": check.accepted(), "verdict": check.verdict(), "difference": check.difference(),

@@ -90,7 +90,7 @@ fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
             group.marking.points,
             group.marking.extra,
             json!(group.marking.credit),
-            group.marking.hints.words().0
+            group.marking.hints.describe().0
         );
     }
     out

@@ -40,7 +40,7 @@ impl Progress for ToldProgress<'_> {
 
 /// Returns a dropped trace from its beginning, unpacked where it is a zstd file.
 pub(crate) fn opened<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
-    let mut bytes = BufReader::with_capacity(PIECE, Dropped { host, file, offset: 0, fault });
+    let mut bytes = BufReader::with_capacity(PIECE, DroppedFile { host, file, offset: 0, fault });
     // A file that can't be read is noticed when it is read.
     match bytes.fill_buf() {
         Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdContent { frames: Frames::Next(bytes), fault }),
@@ -49,14 +49,14 @@ pub(crate) fn opened<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault
 }
 
 /// A dropped file from its beginning.
-struct Dropped<'a> {
+struct DroppedFile<'a> {
     host: &'a dyn PageHost,
     file: u32,
     offset: u64,
     fault: &'a ReadFault,
 }
 
-impl Read for Dropped<'_> {
+impl Read for DroppedFile<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let Some(count) = self.host.read(self.file, self.offset, into) else {
             let _ = self.fault.set("it has changed or is gone; drop it again");
@@ -69,7 +69,7 @@ impl Read for Dropped<'_> {
 
 /// The content of a zstd file. A copy that was damaged on its way says nothing about the trace.
 struct ZstdContent<'a> {
-    frames: Frames<BufReader<Dropped<'a>>>,
+    frames: Frames<BufReader<DroppedFile<'a>>>,
     fault: &'a ReadFault,
 }
 

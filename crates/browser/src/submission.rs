@@ -5,7 +5,7 @@ use crate::{
 };
 use fosssim_grading::{
     SceneResult, Verdict,
-    plan::{self, Found, Plan, PlannedGroup},
+    plan::{self, MatchingScenes, Plan, PlannedGroup},
     result::Reason,
     traces,
 };
@@ -91,7 +91,7 @@ impl DroppedSubmission {
         }
         let likely = result.explanations.first().map(explanation::what);
         let value = json!({
-            "verdict": result.verdict.words(),
+            "verdict": result.verdict.text(),
             "accepted": result.verdict == Verdict::Accepted,
             "isMissing": matches!(result.reason, Reason::NoTrace),
             "right": result.right_steps,
@@ -114,7 +114,7 @@ impl DroppedSubmission {
         let value = json!({
             "points": grade::reached(graded.points),
             "of": grade::points(graded.max_points),
-            "verdict": graded.verdict.words(),
+            "verdict": graded.verdict.text(),
             "unfit": words::unfit(&graded),
             "scenes": scenes,
             "groups": groups,
@@ -124,9 +124,9 @@ impl DroppedSubmission {
 }
 
 /// Returns the dropped scenes that a pattern takes, by their paths beside the suite.
-fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<Found, String> {
+fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern {pattern}: {error}"))?;
-    let found: Found = names
+    let found: MatchingScenes = names
         .iter()
         .zip(files)
         .filter(|(name, _)| glob.matches(name))

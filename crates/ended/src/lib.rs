@@ -12,9 +12,9 @@
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
-/// How a run ended. Every variant but [`Ended::Exited`] and [`Ended::Signalled`] is a decision of the sandbox.
+/// How a run ended. Every variant but [`RunEnd::Exited`] and [`RunEnd::Signalled`] is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Ended {
+pub enum RunEnd {
     /// The program ended by itself with this exit code.
     Exited(i32),
     /// The program was ended by this signal, of its own making (a crash, an abort).
@@ -42,7 +42,7 @@ pub enum Ended {
     Cancelled,
 }
 
-impl Ended {
+impl RunEnd {
     /// Returns the variant's name for machines and for the attack suite: `exited`, `cpu`, `violation` and so on.
     #[must_use]
     pub fn kind(&self) -> &'static str {
@@ -62,7 +62,7 @@ impl Ended {
     }
 }
 
-impl fmt::Display for Ended {
+impl fmt::Display for RunEnd {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exited(code) => write!(formatter, "exited with code {code}"),

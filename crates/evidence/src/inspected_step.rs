@@ -49,7 +49,7 @@ pub struct MergedZones {
 
 /// The trace's log of a call.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Logged {
+pub enum CallLog {
     /// These polynomials in the order of the reference's, highest power first; one that is missing is empty.
     These(Vec<Vec<f64>>),
     /// Nothing.
@@ -70,7 +70,7 @@ pub struct InspectedCall {
     /// How many polynomials the reference logs for it; none without continuous-time detection.
     pub polynomials: usize,
     /// The trace's log of it.
-    pub logged: Logged,
+    pub logged: CallLog,
 }
 
 /// One step looked at closely.
@@ -192,13 +192,13 @@ impl<'a> Inspector<'a> {
             pass.differing.clear();
             pass.is_logged = true;
         }
-        let mut fates: Vec<Logged> = Vec::with_capacity(self.asked.len());
+        let mut fates: Vec<CallLog> = Vec::with_capacity(self.asked.len());
         for asked in &self.asked {
             let of_call = &found[asked.first..asked.first + asked.count];
             let fate = if of_call.iter().all(Option::is_none) {
-                Logged::Nothing
+                CallLog::Nothing
             } else {
-                Logged::These(
+                CallLog::These(
                     of_call.iter().map(|place| place.map_or_else(Vec::new, |at| log.get(at).to_vec())).collect(),
                 )
             };
@@ -210,8 +210,8 @@ impl<'a> Inspector<'a> {
                 };
                 match &fate {
                     _ if asked.count == 0 => {}
-                    Logged::Nothing => keep(&mut pass.missing, asked.pair),
-                    Logged::These(list) if is_wrong(list) => keep(&mut pass.differing, asked.pair),
+                    CallLog::Nothing => keep(&mut pass.missing, asked.pair),
+                    CallLog::These(list) if is_wrong(list) => keep(&mut pass.differing, asked.pair),
                     _ => {}
                 }
             }
@@ -271,7 +271,7 @@ impl<'a> Inspector<'a> {
                 continue;
             };
             let logged = if self.step.passes[pass].missing.contains(&pair) {
-                Logged::Nothing
+                CallLog::Nothing
             } else {
                 by_order(self.log, self.step.expected_polynomials, asked.first, asked.count)
             };
@@ -288,12 +288,12 @@ impl<'a> Inspector<'a> {
 }
 
 /// Returns the log of a call by its place in the list; unknown where the list has another length than the reference's.
-fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> Logged {
+fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> CallLog {
     match log {
         Some(log) if log.len() == expected => {
-            Logged::These((first..first + count).map(|place| log.get(place).to_vec()).collect())
+            CallLog::These((first..first + count).map(|place| log.get(place).to_vec()).collect())
         }
-        _ => Logged::Unknown,
+        _ => CallLog::Unknown,
     }
 }
 
@@ -357,7 +357,7 @@ impl Observer for Inspector<'_> {
         if wanted {
             let study = Study::for_motion(&motion());
             // Only the whole step tells whether the list is as long as the reference's.
-            self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: Logged::Unknown });
+            self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
             self.places.push((self.calls - 1, first));
         }
         if self.asked.len() < CALLS {

@@ -45,6 +45,6 @@ mod track;
 pub use examined::{ExaminedTrace, KeptPart, examine};
 pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, inspect};
-pub use inspected_step::{InspectedCall, InspectedPass, InspectedStep, Logged, MergedZones};
+pub use inspected_step::{CallLog, InspectedCall, InspectedPass, InspectedStep, MergedZones};
 pub use rulings::{StepRuling, StepRulings};
 pub use track::{BUDGET, Track, Window};

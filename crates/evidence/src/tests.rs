@@ -73,7 +73,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
     let call = close.calls.iter().find(|call| call.pair == place.pair && call.pass == place.pass).expect("the call");
     let study = call.study.as_ref().expect("an answer");
     let number = study.curves.iter().position(|curve| curve.role == place.role).expect("the role");
-    let Logged::These(logged) = &call.logged else { panic!("{call:?}") };
+    let CallLog::These(logged) = &call.logged else { panic!("{call:?}") };
     assert_ne!(study.curves[number].logged.coefficients(), &logged[number][..]);
     assert!(close.passes[0].differing.contains(&place.pair));
 }
@@ -129,7 +129,7 @@ fn pairs_that_are_left_out_or_looked_at_twice_are_told() {
     let missing: usize = pass.missing.iter().map(polynomials).sum();
     assert_eq!(missing, pruned.expected_polynomials - pruned.actual_polynomials);
     // One of them is looked at, although no finding names it.
-    assert!(pruned.calls.iter().any(|call| call.logged == Logged::Nothing && pass.missing.contains(&call.pair)));
+    assert!(pruned.calls.iter().any(|call| call.logged == CallLog::Nothing && pass.missing.contains(&call.pair)));
     let twice = close("pairs-both-orders");
     let pass = &twice.passes[0];
     assert!(pass.differing.is_empty() && pass.missing.is_empty(), "{pass:?}");
@@ -155,6 +155,6 @@ fn a_pair_is_looked_at_in_every_pass_from_the_trace_s_own_records() {
     let pair = close.passes[0].hits[0].pair;
     let seen = inspect(&scene, step, &before, Some((&mid, &PolynomialLog::default())), pair);
     assert_eq!(seen.step.calls.len(), close.expected_passes);
-    assert!(seen.step.calls.iter().all(|call| call.pair == pair && call.logged == Logged::Nothing));
+    assert!(seen.step.calls.iter().all(|call| call.pair == pair && call.logged == CallLog::Nothing));
     assert_eq!((Some(&seen.end), seen.failed), (close.expected_end.as_ref(), None));
 }

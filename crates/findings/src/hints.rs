@@ -22,7 +22,7 @@ pub enum Hints {
 impl Hints {
     /// Returns the level's name in suites, and what it means in a few words.
     #[must_use]
-    pub const fn words(self) -> (&'static str, &'static str) {
+    pub const fn describe(self) -> (&'static str, &'static str) {
         match self {
             Self::None => ("none", "the verdict only"),
             Self::Where => ("where", "where the first difference is"),

@@ -1,5 +1,5 @@
 //! The common properties of scenes in which a program crashes or runs into a limit, as a value.
-use fosssim_ended::Ended;
+use fosssim_ended::RunEnd;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ pub struct Content {
 
 /// How programs fail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Failing {
+pub enum FailureKind {
     /// By a signal.
     Crash,
     /// By an exit code of their own.
@@ -33,7 +33,7 @@ pub enum Failing {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LocatedFailure {
     /// How it fails.
-    pub failing: Failing,
+    pub failing: FailureKind,
     /// The contents of all these scenes, the most general first; the scenes can't tell them apart.
     pub contents: Vec<Content>,
     /// The number of scenes in which it fails; all of them contain it.
@@ -48,18 +48,18 @@ pub struct LocatedFailure {
     pub step: u32,
 }
 
-impl Failing {
+impl FailureKind {
     /// Returns how a program failed that ended so; nothing where it ended well, or where that says nothing of it.
     #[must_use]
-    pub const fn from_end(ended: &Ended) -> Option<Self> {
+    pub const fn from_end(ended: &RunEnd) -> Option<Self> {
         match ended {
-            Ended::Signalled(_) => Some(Self::Crash),
-            Ended::Exited(0) | Ended::CouldNotStart(_) | Ended::Cancelled => None,
-            Ended::Exited(_) => Some(Self::Error),
-            Ended::CpuLimit | Ended::WallLimit => Some(Self::Time),
-            Ended::MemoryLimit => Some(Self::Memory),
-            Ended::TraceLimit | Ended::FolderLimit => Some(Self::Output),
-            Ended::ProcessLimit | Ended::Violation { .. } => None,
+            RunEnd::Signalled(_) => Some(Self::Crash),
+            RunEnd::Exited(0) | RunEnd::CouldNotStart(_) | RunEnd::Cancelled => None,
+            RunEnd::Exited(_) => Some(Self::Error),
+            RunEnd::CpuLimit | RunEnd::WallLimit => Some(Self::Time),
+            RunEnd::MemoryLimit => Some(Self::Memory),
+            RunEnd::TraceLimit | RunEnd::FolderLimit => Some(Self::Output),
+            RunEnd::ProcessLimit | RunEnd::Violation { .. } => None,
         }
     }
 }

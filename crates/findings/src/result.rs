@@ -14,7 +14,7 @@ use fosssim_model::{
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, time::Duration};
 
-pub use fosssim_ended::{Ended, StartProblem};
+pub use fosssim_ended::{RunEnd, StartProblem};
 
 /// The result of one scene: everything but its points, which follow from the suite. It holds all that staff may know;
 /// reports for students are made of what `mistakes::together::told_to_students` leaves of it.
@@ -27,7 +27,7 @@ pub struct SceneResult {
     /// Why that is the verdict.
     pub reason: Reason,
     /// How the program ended, if it was run.
-    pub ended: Option<Ended>,
+    pub ended: Option<RunEnd>,
     /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
     pub differs: Option<Cause>,
     /// The part of the trace that may be told.
@@ -80,7 +80,7 @@ impl SceneResult {
     /// is the same in every scene stays, and so do names of likely mistakes, of which a report tells few.
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
-            Reason::Right | Reason::Wrong(Wrong::Nothing) | Reason::NoTrace => true,
+            Reason::Right | Reason::Wrong(WrongTrace::Nothing) | Reason::NoTrace => true,
             Reason::LeftOut(_) | Reason::Stopped | Reason::DoesNotBuild | Reason::Unusable(_) => true,
             Reason::Wrong(_) | Reason::Trace(_) | Reason::Program(_) | Reason::Failed(_) | Reason::Withheld => false,
         };
@@ -115,13 +115,13 @@ pub enum Reason {
     /// Every step is right.
     Right,
     /// The trace is complete and wrong.
-    Wrong(Wrong),
+    Wrong(WrongTrace),
     /// The trace can't be read to its end.
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
     /// How the program ended ([`SceneResult::ended`]), and how far it came.
-    Program(Reached),
+    Program(ProgramProgress),
     /// The scene was left out.
     LeftOut(NotRunReason),
     /// Grading was stopped.
@@ -131,14 +131,14 @@ pub enum Reason {
     /// The reason is withheld from students ([`SceneResult::withhold`]).
     Withheld,
     /// The submission itself can't be run.
-    Unusable(Unusable),
+    Unusable(UnusableReason),
     /// The grader failed.
     Failed(Failure),
 }
 
 /// In what a trace is wrong, as far as hints tell it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub enum Wrong {
+pub enum WrongTrace {
     /// Hints tell nothing.
     Untold,
     /// In that nothing is logged: no polynomial and no collision.
@@ -192,7 +192,7 @@ pub enum BadTrace {
 
 /// How far a program came, and the limit that it was stopped at, if it was.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Reached {
+pub struct ProgramProgress {
     /// The limit.
     pub limit: Option<Limit>,
     /// Steps whose records were complete.
@@ -226,7 +226,7 @@ pub enum NotRunReason {
 
 /// Why a submission can't be run: its own fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Unusable {
+pub enum UnusableReason {
     /// The program can't be started.
     CouldNotStart(StartProblem),
     /// There is no program of the name that is looked for.
@@ -305,7 +305,7 @@ pub enum BuildEnd {
     /// The build made the program.
     Made,
     /// The build ended in another way than with exit code 0.
-    Ended(Ended),
+    Ended(RunEnd),
     /// The build ended well and made no program of this name.
     MadeNo(String),
     /// The build's product can't be used, for this reason.

@@ -79,7 +79,7 @@ impl Ruling {
 
     /// Returns the words, such as `wrong answer`.
     #[must_use]
-    pub const fn words(self) -> &'static str {
+    pub const fn text(self) -> &'static str {
         match self {
             Self::Accepted => "accepted",
             Self::Undecided => "undecided",

@@ -87,7 +87,7 @@ impl Verdict {
 
     /// Returns the words, as reports and JSON write them.
     #[must_use]
-    pub const fn words(self) -> &'static str {
+    pub const fn text(self) -> &'static str {
         self.texts().1
     }
 
@@ -106,7 +106,7 @@ impl Verdict {
 
 impl std::fmt::Display for Verdict {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter.pad(self.words())
+        formatter.pad(self.text())
     }
 }
 
@@ -118,7 +118,7 @@ mod tests {
     fn the_order_of_the_list_is_the_order_of_severity() {
         assert!(Verdict::ALL.is_sorted());
         assert_eq!(Verdict::Accepted.max(Verdict::TimeLimit), Verdict::TimeLimit);
-        let words: std::collections::BTreeSet<&str> = Verdict::ALL.map(Verdict::words).into();
+        let words: std::collections::BTreeSet<&str> = Verdict::ALL.map(Verdict::text).into();
         assert_eq!(words.len(), Verdict::ALL.len());
     }
 }

@@ -47,18 +47,18 @@ impl Display for WithoutStep<'_> {
         match self.0.detail {
             FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
-                let (pair, time, normal) = (PairWords(pair), Exact(time), VectorWords(normal.into()));
+                let (pair, time, normal) = (PairWords(pair), ExactNumber(time), VectorWords(normal.into()));
                 write!(f, "{pair} collide at time {time} with normal {normal}, the trace misses it")
             }
             FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
-                let (pair, time, normal) = (LoggedPair(&actual), Exact(time), VectorWords(normal.into()));
+                let (pair, time, normal) = (LoggedPair(&actual), ExactNumber(time), VectorWords(normal.into()));
                 write!(f, "the trace has {pair} collide at time {time} with normal {normal}, they do not")
             }
             FindingDetail::WrongNormal { expected, actual, .. } => {
                 let pair = PairWords(expected.pair);
                 let (expected, actual) = (expected.normal, actual.normal);
-                let apart = Apart { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
+                let apart = VectorDifference { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
                 write!(f, "{pair}: contact normal {apart}")
             }
             FindingDetail::PolynomialCount { expected, actual, per_pass } => {
@@ -78,16 +78,16 @@ impl Display for WithoutStep<'_> {
                 write!(f, "{place}: the reference's coefficients all vanish, the trace's do not")
             }
             FindingDetail::Coefficient { place, power, expected, actual, .. } => {
-                write!(f, "{place}, {}: {}, expected {}", Power(power), Exact(actual), Exact(expected))
+                write!(f, "{place}, {}: {}, expected {}", Power(power), ExactNumber(actual), ExactNumber(expected))
             }
             FindingDetail::Position { particle, expected, actual, .. } => {
-                write!(f, "particle {particle} {verb} at {}", Apart { expected, actual })
+                write!(f, "particle {particle} {verb} at {}", VectorDifference { expected, actual })
             }
             FindingDetail::Velocity { particle, expected, actual, .. } => {
-                write!(f, "particle {particle} {verb} with velocity {}", Apart { expected, actual })
+                write!(f, "particle {particle} {verb} with velocity {}", VectorDifference { expected, actual })
             }
             FindingDetail::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
-                let times = [time, actual.time].map(Exact);
+                let times = [time, actual.time].map(ExactNumber);
                 write!(f, "{} collide at time {}, the trace says {}", PairWords(pair), times[0], times[1])
             }
             FindingDetail::RepeatedCollision { actual } => {
@@ -125,7 +125,7 @@ impl Display for WithoutStep<'_> {
 
 /// Writes the sentence about a time of impact, the expected one first, that follows from lost coefficients.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
-    let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(Exact));
+    let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(ExactNumber));
     write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
 }
 
@@ -148,12 +148,12 @@ fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Re
 }
 
 /// Two vectors, the wrong one first, with as many digits as tell them apart, and their distance.
-struct Apart {
+struct VectorDifference {
     expected: [f64; 2],
     actual: [f64; 2],
 }
 
-impl Display for Apart {
+impl Display for VectorDifference {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let ([ex, ey], [ax, ay]) = (self.expected, self.actual);
         let distance = vector::length(Vec2::new(ax - ex, ay - ey));
@@ -185,9 +185,9 @@ fn rounded(value: f64, places: i32, power: Option<i32>) -> f64 {
 }
 
 /// A number in its shortest exact form.
-struct Exact(f64);
+struct ExactNumber(f64);
 
-impl Display for Exact {
+impl Display for ExactNumber {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         if self.0.is_finite() { f.write_str(&exact(self.0)) } else { write!(f, "{}", self.0) }
     }
@@ -198,7 +198,7 @@ struct VectorWords([f64; 2]);
 
 impl Display for VectorWords {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "({}, {})", Exact(self.0[0]), Exact(self.0[1]))
+        write!(f, "({}, {})", ExactNumber(self.0[0]), ExactNumber(self.0[1]))
     }
 }
 
@@ -387,7 +387,7 @@ mod tests {
 
     #[test]
     fn vectors_have_as_many_digits_as_tell_them_apart() {
-        let words = |expected, actual| Apart { expected, actual }.to_string();
+        let words = |expected, actual| VectorDifference { expected, actual }.to_string();
         assert_eq!(
             words([0.123_456_789_012, -1.0], [0.123_456_789_912, -1.0]),
             "(0.12345678991, -1), expected (0.12345678901, -1), distance 9e-10"

@@ -35,7 +35,7 @@ impl Cancellation {
         if self.is_cancelled() {
             canceller.cancel();
         }
-        Registered { cancellation: self, number }
+        Registration { cancellation: self, number }
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<(u64, Canceller)>> {
@@ -43,12 +43,12 @@ impl Cancellation {
     }
 }
 
-struct Registered<'a> {
+struct Registration<'a> {
     cancellation: &'a Cancellation,
     number: u64,
 }
 
-impl Drop for Registered<'_> {
+impl Drop for Registration<'_> {
     fn drop(&mut self) {
         self.cancellation.lock().retain(|(number, _)| *number != self.number);
     }

@@ -16,7 +16,7 @@ const LARGEST: u64 = 64 << 20;
 
 /// A judged trace that is at hand.
 #[derive(Debug, Clone, Copy)]
-pub struct Judged<'a> {
+pub struct JudgedTrace<'a> {
     /// The scene.
     pub scene: &'a Scene,
     /// The scene's name.
@@ -38,7 +38,7 @@ pub struct Judged<'a> {
 }
 
 /// Draws the card of a trace, or nothing where there is nothing to show.
-pub type Draw<'a> = dyn Fn(&Judged<'_>) -> Option<String> + Sync + 'a;
+pub type Draw<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 
 /// Where cards are kept, and who draws them.
 #[derive(Clone, Copy)]
@@ -59,7 +59,7 @@ impl Cards<'_> {
     ///
     /// # Errors
     /// When one can't be written.
-    pub fn keep(&self, judged: &Judged<'_>, students: Hints) -> io::Result<CardNames> {
+    pub fn keep(&self, judged: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
         let card = self.keep_one(judged)?;
         if students >= judged.hints {
             return Ok((card.clone(), card));
@@ -68,10 +68,10 @@ impl Cards<'_> {
             return Ok((card, None));
         }
         let explanations = cut(students, judged.explanations.to_vec());
-        Ok((card, self.keep_one(&Judged { explanations: &explanations, hints: students, ..*judged })?))
+        Ok((card, self.keep_one(&JudgedTrace { explanations: &explanations, hints: students, ..*judged })?))
     }
 
-    fn keep_one(&self, judged: &Judged<'_>) -> io::Result<Option<String>> {
+    fn keep_one(&self, judged: &JudgedTrace<'_>) -> io::Result<Option<String>> {
         let Some(card) = (self.draw)(judged) else { return Ok(None) };
         let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
         let path = file(self.folder, &name);
@@ -124,9 +124,19 @@ mod tests {
         (scene, outcome, result)
     }
 
-    fn judged<'a>(scene: &'a Scene, outcome: &'a Outcome) -> Judged<'a> {
+    fn judged<'a>(scene: &'a Scene, outcome: &'a Outcome) -> JudgedTrace<'a> {
         let (rules, hints) = (Rules::Fair, Hints::Full);
-        Judged { scene, name: "a/b", explanations: &[], outcome, rulings: &[], trace: &[], is_cut: false, rules, hints }
+        JudgedTrace {
+            scene,
+            name: "a/b",
+            explanations: &[],
+            outcome,
+            rulings: &[],
+            trace: &[],
+            is_cut: false,
+            rules,
+            hints,
+        }
     }
 
     #[test]
@@ -136,7 +146,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("a folder");
         let cards = Place::new(folder.path(), "cards");
         let keep = |text: &'static str| {
-            let draw = move |_: &Judged<'_>| (!text.is_empty()).then(|| text.to_owned());
+            let draw = move |_: &JudgedTrace<'_>| (!text.is_empty()).then(|| text.to_owned());
             let cards = Cards { folder: &cards, draw: &draw, for_students: false };
             cards.keep(&judged, Hints::Full).expect("written").0
         };
@@ -164,7 +174,7 @@ mod tests {
         let judged = judged(&scene, &outcome);
         let folder = tempfile::tempdir().expect("a folder");
         let place = Place::new(folder.path(), "cards");
-        let draw = |judged: &Judged<'_>| (judged.hints > Hints::None).then(|| format!("{:?}", judged.hints));
+        let draw = |judged: &JudgedTrace<'_>| (judged.hints > Hints::None).then(|| format!("{:?}", judged.hints));
         for (for_students, students, expected) in [
             (false, Hints::Full, Some("Full")),
             (false, Hints::Where, None),

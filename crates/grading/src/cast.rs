@@ -12,7 +12,7 @@ use fosssim_model::{
     sim::{Observer, RootSearch, Simulation, Zone},
     trace::{Layout, Recorder},
 };
-use fosssim_sandbox::{Backend, Ended, FakeRun, Job};
+use fosssim_sandbox::{Backend, FakeRun, Job, RunEnd};
 use std::{
     path::Path,
     sync::{Arc, Mutex},
@@ -73,8 +73,8 @@ fn act(job: &Job) -> FakeRun {
             FakeRun::wrote(trace)
         }
         Some("trailing") => FakeRun::wrote([&right_trace(job)[..], b"more"].concat()),
-        Some("crash-after-right-trace") => FakeRun { ended: Ended::Signalled(11), ..FakeRun::wrote(right_trace(job)) },
-        Some("exit-1-after-right-trace") => FakeRun { ended: Ended::Exited(1), ..FakeRun::wrote(right_trace(job)) },
+        Some("crash-after-right-trace") => FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::wrote(right_trace(job)) },
+        Some("exit-1-after-right-trace") => FakeRun { ended: RunEnd::Exited(1), ..FakeRun::wrote(right_trace(job)) },
         Some("nothing") => FakeRun::wrote([]),
         Some("unwritten") => {
             let (scene, trace) = (scene(job), right_trace(job));
@@ -96,28 +96,28 @@ fn act(job: &Job) -> FakeRun {
                 moved.0
             });
             match step {
-                Some(step) => FakeRun { ended: Ended::Signalled(11), ..FakeRun::wrote(trace(&scene, step - 1)) },
+                Some(step) => FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::wrote(trace(&scene, step - 1)) },
                 None => FakeRun::wrote(right_trace(job)),
             }
         }
-        Some("slow") => FakeRun { ended: Ended::WallLimit, ..FakeRun::wrote([]) },
+        Some("slow") => FakeRun { ended: RunEnd::WallLimit, ..FakeRun::wrote([]) },
         Some("lengthy") => FakeRun { cpu: Duration::from_secs(10), ..FakeRun::wrote(right_trace(job)) },
         Some("fault-while-judging" | "fault-while-explaining") => FakeRun::wrote(right_trace(job)),
         Some(name) if name.starts_with("right-then-") => {
             let more = if name.contains("flood") { 2 * SMALL_TRACE } else { usize::from(name.contains("byte")) };
             let ended = match name.rsplit('-').next() {
-                Some("exits") => Ended::Exited(0),
-                Some("fails") => Ended::Exited(1),
-                Some("crashes") => Ended::Signalled(11),
-                Some("unread") => Ended::Signalled(13),
-                Some("stopped") => Ended::TraceLimit,
-                Some("sleeps") => Ended::WallLimit,
+                Some("exits") => RunEnd::Exited(0),
+                Some("fails") => RunEnd::Exited(1),
+                Some("crashes") => RunEnd::Signalled(11),
+                Some("unread") => RunEnd::Signalled(13),
+                Some("stopped") => RunEnd::TraceLimit,
+                Some("sleeps") => RunEnd::WallLimit,
                 other => panic!("no end {other:?}"),
             };
             FakeRun { ended, ..FakeRun::wrote([&right_trace(job)[..], &vec![b'x'; more]].concat()) }
         }
         Some("flood-of-nonsense") => FakeRun::wrote(vec![0xff; 2 * SMALL_TRACE]),
-        Some("hostile") => FakeRun::ended(Ended::Violation { call: "ptrace".to_owned() }),
+        Some("hostile") => FakeRun::ended(RunEnd::Violation { call: "ptrace".to_owned() }),
         name => panic!("no part for {name:?}"),
     }
 }

@@ -5,7 +5,7 @@
 use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
-    result::{BadTrace, Ended, Limit, Measurements, Reached, Reason, SceneResult, Wrong},
+    result::{BadTrace, Limit, Measurements, ProgramProgress, Reason, RunEnd, SceneResult, WrongTrace},
     task::SceneTask,
     verdict::Verdict,
 };
@@ -31,7 +31,7 @@ const KEPT_OUTPUT: usize = 4096;
 /// How a program ended, what it took, and what it printed.
 #[derive(Debug, Clone)]
 pub struct ProgramRun {
-    ended: Ended,
+    ended: RunEnd,
     measured: Measurements,
     stdout: String,
     stderr: String,
@@ -42,7 +42,7 @@ impl ProgramRun {
     #[must_use]
     pub fn well() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
-        Self { ended: Ended::Exited(0), measured, stdout: String::new(), stderr: String::new() }
+        Self { ended: RunEnd::Exited(0), measured, stdout: String::new(), stderr: String::new() }
     }
 }
 
@@ -173,30 +173,30 @@ fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
 
 /// Returns the verdict by the program's end alone. Bytes behind the last record mean the same however many they are: a
 /// program that is stopped because of them ended when the judge had all records.
-fn verdict_of_program(ended: &Ended, judged: &Outcome) -> Verdict {
+fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
-        Ended::Exited(0) => Verdict::Accepted,
-        Ended::TraceLimit if had_all => Verdict::Accepted,
-        Ended::Cancelled => Verdict::NotRun,
-        Ended::Exited(_) | Ended::Signalled(_) => Verdict::RuntimeError,
-        Ended::CouldNotStart(_) => Verdict::Unusable,
-        Ended::CpuLimit | Ended::WallLimit => Verdict::TimeLimit,
-        Ended::MemoryLimit => Verdict::MemoryLimit,
-        Ended::TraceLimit | Ended::FolderLimit => Verdict::OutputLimit,
-        Ended::ProcessLimit | Ended::Violation { .. } => Verdict::Violation,
+        RunEnd::Exited(0) => Verdict::Accepted,
+        RunEnd::TraceLimit if had_all => Verdict::Accepted,
+        RunEnd::Cancelled => Verdict::NotRun,
+        RunEnd::Exited(_) | RunEnd::Signalled(_) => Verdict::RuntimeError,
+        RunEnd::CouldNotStart(_) => Verdict::Unusable,
+        RunEnd::CpuLimit | RunEnd::WallLimit => Verdict::TimeLimit,
+        RunEnd::MemoryLimit => Verdict::MemoryLimit,
+        RunEnd::TraceLimit | RunEnd::FolderLimit => Verdict::OutputLimit,
+        RunEnd::ProcessLimit | RunEnd::Violation { .. } => Verdict::Violation,
     }
 }
 
 /// Returns how far a program's trace had come, and the limit that it was stopped at.
-fn reached(ended: &Ended, judged: &Outcome, limits: &RunLimits) -> Reached {
+fn reached(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgress {
     let limit = match ended {
-        Ended::CpuLimit => Some(Limit::Time(limits.cpu)),
-        Ended::WallLimit => Some(Limit::Time(limits.wall)),
-        Ended::MemoryLimit => Some(Limit::Memory(limits.memory)),
+        RunEnd::CpuLimit => Some(Limit::Time(limits.cpu)),
+        RunEnd::WallLimit => Some(Limit::Time(limits.wall)),
+        RunEnd::MemoryLimit => Some(Limit::Memory(limits.memory)),
         _ => None,
     };
-    Reached { limit, steps: judged.steps_judged }
+    ProgramProgress { limit, steps: judged.steps_judged }
 }
 
 /// Returns the verdict by the trace alone.
@@ -206,7 +206,7 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
-        return (Verdict::Unwritten, Reason::Wrong(Wrong::Nothing));
+        return (Verdict::Unwritten, Reason::Wrong(WrongTrace::Nothing));
     }
     match (&judged.stop, judged.ruling(rules.official())) {
         (Some(Stop::Trace { .. }), _) if trace_bytes == 0 => (Verdict::NoOutput, Reason::NoTrace),
@@ -224,18 +224,18 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     }
 }
 
-fn wrong(judged: &Outcome, rules: Rules) -> Wrong {
+fn wrong(judged: &Outcome, rules: Rules) -> WrongTrace {
     let account = judged.findings_by(rules.official());
     if let (Book::Parity, Some(error)) = (rules.official(), judged.parity.endless) {
-        return Wrong::NoResult(error);
+        return WrongTrace::NoResult(error);
     }
     match account.first_divergence {
-        Some(first) if first.step == 0 && account.wrong_steps == 0 => Wrong::FirstRecord(first.kind()),
-        Some(first) => Wrong::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },
-        None if judged.damaged_steps > 0 => Wrong::Damaged,
-        None if judged.ruling(rules.official()) == Ruling::Undecided => Wrong::Undecided,
-        None if judged.fair.as_ref().is_some_and(|fair| fair.refusal.is_some()) => Wrong::Borderline,
-        None => Wrong::SmallErrors,
+        Some(first) if first.step == 0 && account.wrong_steps == 0 => WrongTrace::FirstRecord(first.kind()),
+        Some(first) => WrongTrace::Steps { wrong: account.wrong_steps, first: first.step, kind: first.kind() },
+        None if judged.damaged_steps > 0 => WrongTrace::Damaged,
+        None if judged.ruling(rules.official()) == Ruling::Undecided => WrongTrace::Undecided,
+        None if judged.fair.as_ref().is_some_and(|fair| fair.refusal.is_some()) => WrongTrace::Borderline,
+        None => WrongTrace::SmallErrors,
     }
 }
 

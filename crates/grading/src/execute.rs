@@ -1,15 +1,15 @@
 //! Runs one program on one scene in the sandbox and judges the trace that it leaves.
 use super::{
     cancellation::Cancellation,
-    cards::{Cards, Judged},
+    cards::{Cards, JudgedTrace},
     conclude::{Look, ProgramRun, Run, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, guarded},
     result::{Activity, Failure, Reason, SceneResult},
-    staging::Staged,
+    staging::StagedProgram,
     task::SceneTask,
-    temporary::{Folders, Temporary},
+    temporary::{Folders, TemporaryFolder},
     timings::{RunPart, Stopwatch, Timings},
     verdict::Verdict,
 };
@@ -72,7 +72,7 @@ impl Runner<'_> {
     /// Runs `program` on a scene, in a working folder of its own that is gone afterwards, and judges it. A fault of
     /// ours is tried once more, then it is the verdict. `on_step` hears the number of every judged step.
     #[must_use]
-    pub fn grade(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
+    pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
         loop {
             if self.cancellation.is_cancelled() {
@@ -86,7 +86,12 @@ impl Runner<'_> {
         }
     }
 
-    fn attempt(&self, program: &Staged, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> Result<SceneResult, String> {
+    fn attempt(
+        &self,
+        program: &StagedProgram,
+        task: &SceneTask,
+        on_step: &mut dyn FnMut(u32),
+    ) -> Result<SceneResult, String> {
         let begin = Instant::now();
         let mut watch = Stopwatch::new(self.timings);
         let (running, folder) = self.start(&program.program, program.identity, task)?;
@@ -135,7 +140,7 @@ impl Runner<'_> {
         if let Some(cards) = self.cards
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {
-            let judged = Judged {
+            let judged = JudgedTrace {
                 scene: &task.scene,
                 name: &task.name,
                 explanations: &result.explanations,
@@ -196,7 +201,7 @@ impl Runner<'_> {
         program: &Path,
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
-    ) -> Result<(RunningProgram, Temporary), String> {
+    ) -> Result<(RunningProgram, TemporaryFolder), String> {
         let folder = self.folders.take().map_err(|error| format!("no working folder for a run: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
@@ -213,7 +218,7 @@ impl Runner<'_> {
     /// Judges the trace of a program. What the judge did not want is read all the same, to be kept.
     fn judge_trace(
         &self,
-        program: &Staged,
+        program: &StagedProgram,
         task: &SceneTask,
         kept: &mut KeptTrace,
         mut trace: impl Read + Send,

@@ -18,7 +18,7 @@ use super::{
     recipe::Recipe,
     result::{Failure, NotRunReason, Reason, SceneResult},
     results::{KeepError, Results},
-    staging::{self, Staged},
+    staging::{self, StagedProgram},
     task::SceneTask,
     temporary::Folders,
     timings::Timings,
@@ -104,7 +104,7 @@ impl Grader<'_> {
     }
 
     /// Returns everything besides program and scene that a result depends on.
-    fn words(&self) -> Vec<String> {
+    fn conditions(&self) -> Vec<String> {
         let walls = self.backend.layers().iter().filter(|report| report.active);
         vec![
             walls.map(|report| report.layer.name()).collect::<Vec<_>>().join(","),
@@ -136,12 +136,13 @@ pub(super) struct SharedGrading<'a> {
     /// The contents of the plan's scenes, once somebody has asked.
     contents: OnceLock<Vec<Contents>>,
     /// The copy of the reference program, once something is timed.
-    reference: OnceLock<Arc<Result<Staged, String>>>,
+    reference: OnceLock<Arc<Result<StagedProgram, String>>>,
 }
 
 impl<'a> SharedGrading<'a> {
     pub(super) fn new(grader: &Grader<'_>, results: Option<&'a dyn Results>, cancellation: &'a Cancellation) -> Self {
-        let (folders, words, kept, claimed) = (Folders::default(), grader.words(), Mutex::default(), Mutex::default());
+        let (folders, words, kept, claimed) =
+            (Folders::default(), grader.conditions(), Mutex::default(), Mutex::default());
         let (full, contents, reference, released) = (OnceLock::new(), OnceLock::new(), OnceLock::new(), Condvar::new());
         Self { cancellation, results, folders, words, kept, claimed, released, full, contents, reference }
     }
@@ -152,13 +153,13 @@ impl<'a> SharedGrading<'a> {
     }
 
     /// Returns the copy of the reference program.
-    pub(super) fn reference(&self, program: &Path) -> Arc<Result<Staged, String>> {
+    pub(super) fn reference(&self, program: &Path) -> Arc<Result<StagedProgram, String>> {
         self.reference.get_or_init(|| Arc::new(staging::reference(program))).clone()
     }
 
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
         // A program may behave as it is called, so its name belongs to what is graded.
-        let own = [scene.name.as_str(), called, students.words().0];
+        let own = [scene.name.as_str(), called, students.describe().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
         Key::from_program(digest, &scene.xml, &words)
     }
@@ -170,7 +171,7 @@ impl<'a> SharedGrading<'a> {
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
         let lacks_card = cards.is_some_and(|cards| cards.lack(&result, students));
         let cached = !lock(&self.kept).contains(key);
-        (!lacks_trace && !lacks_card).then_some(Done { result, cached, claim: None })
+        (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
     }
 
     /// Claims the key of a result, once no other job is at work on it; the result, if there is one then.
@@ -223,7 +224,7 @@ impl Drop for KeyClaim<'_> {
 }
 
 /// A scene that has its result.
-struct Done<'s> {
+struct FinishedScene<'s> {
     result: SceneResult,
     /// Taken from an earlier run.
     cached: bool,
@@ -232,9 +233,9 @@ struct Done<'s> {
 }
 
 /// A result that was found, for which nobody needs a claim.
-type FoundResult = Done<'static>;
+type FoundResult = FinishedScene<'static>;
 
-impl Done<'_> {
+impl FinishedScene<'_> {
     fn unkept(result: SceneResult) -> Self {
         Self { result, cached: false, claim: None }
     }
@@ -260,12 +261,12 @@ pub(super) struct SubmissionGrading<'a> {
     pub(super) submission: &'a Submission,
     /// The digest of the program as it lies there; none for what has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
-    pub(super) staged: Mutex<Option<Arc<Result<Staged, String>>>>,
-    known: Mutex<Known>,
+    pub(super) staged: Mutex<Option<Arc<Result<StagedProgram, String>>>>,
+    known: Mutex<SubmissionProgress>,
 }
 
 /// The results of a submission's scenes so far.
-struct Known {
+struct SubmissionProgress {
     /// Verdict of every scene that is done, and how long its run and judging it took.
     done: Vec<Option<(Verdict, Duration)>>,
     /// The first scene that is not run any more, and why.
@@ -287,7 +288,7 @@ impl<'a> SubmissionGrading<'a> {
             submission,
             digest: OnceLock::new(),
             staged: Mutex::default(),
-            known: Mutex::new(Known { done, end: None, told, missing }),
+            known: Mutex::new(SubmissionProgress { done, end: None, told, missing }),
         }
     }
 
@@ -295,9 +296,9 @@ impl<'a> SubmissionGrading<'a> {
     /// grade.
     pub(super) fn scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
-            Done::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
+            FinishedScene::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
         });
-        let Done { result, cached, claim } = done;
+        let FinishedScene { result, cached, claim } = done;
         self.note(number, &result);
         if let Some(claim) = claim {
             self.shared.keep(&claim.key, self.submission, &result);
@@ -317,10 +318,10 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> Done<'a> {
-        let without_run = |verdict, why| Done::unkept(scene.without_run(verdict, why));
+    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> FinishedScene<'a> {
+        let without_run = |verdict, why| FinishedScene::unkept(scene.without_run(verdict, why));
         if let Some(why) = self.left_out(number) {
-            return Done::unkept(patience::left_out(scene, why));
+            return FinishedScene::unkept(patience::left_out(scene, why));
         }
         tell(SceneNews::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
@@ -334,8 +335,10 @@ impl<'a> SubmissionGrading<'a> {
             Err(done) => return *done,
         };
         match &*self.staged() {
-            Err(message) => Done::unkept(scene.failed(Failure::Machine(message.clone()))),
-            Ok(Staged { refused: Some(why), .. }) => without_run(Verdict::Unusable, Reason::Unusable(why.clone())),
+            Err(message) => FinishedScene::unkept(scene.failed(Failure::Machine(message.clone()))),
+            Ok(StagedProgram { refused: Some(why), .. }) => {
+                without_run(Verdict::Unusable, Reason::Unusable(why.clone()))
+            }
             Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.end.is_success()) => {
                 match shared.cancellation.is_cancelled() {
                     true => without_run(Verdict::NotRun, Reason::Stopped),
@@ -348,7 +351,7 @@ impl<'a> SubmissionGrading<'a> {
                     Err(done) => *done,
                     Ok(claim) => {
                         let result = self.run(staged, scene, trace.as_ref(), tell);
-                        Done { result, cached: false, claim: Some(claim) }
+                        FinishedScene { result, cached: false, claim: Some(claim) }
                     }
                 }
             }
@@ -357,7 +360,7 @@ impl<'a> SubmissionGrading<'a> {
 
     fn run(
         &self,
-        staged: &Staged,
+        staged: &StagedProgram,
         scene: &SceneTask,
         trace: Option<&Place>,
         tell: &mut dyn FnMut(SceneNews),
@@ -424,11 +427,11 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     /// Returns the staged submission; the first job stages it, the others wait.
-    pub(super) fn staged(&self) -> Arc<Result<Staged, String>> {
+    pub(super) fn staged(&self) -> Arc<Result<StagedProgram, String>> {
         lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage())).clone()
     }
 
-    fn stage(&self) -> Result<Staged, String> {
+    fn stage(&self) -> Result<StagedProgram, String> {
         let Submission { path, program, file, .. } = self.submission;
         let Grader { program: name, backend, .. } = *self.grader;
         let build = self.grader.plan.build.as_ref();

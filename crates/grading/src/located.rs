@@ -5,7 +5,7 @@
 //! other by Ochiai's measure, and where chance would not bring that about: Fisher's exact test, for as many values as
 //! are looked at. Values that the scenes can't tell apart are told together.
 use super::coverage::{Coverage, FAMILIES};
-pub use fosssim_findings::located::{Content, Failing, LocatedFailure};
+pub use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,7 +27,7 @@ pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// How its program failed, if it did.
-    pub failing: Option<Failing>,
+    pub failing: Option<FailureKind>,
     /// Steps whose records were complete.
     pub steps: u32,
     /// The contents of the scene.
@@ -104,7 +104,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     contents.retain(|content| content.value.is_none() || !kinds.contains(&content.family));
     let failing = failed.iter().filter_map(|one| one.failing).reduce(|one, other| match one == other {
         true => one,
-        false => Failing::Several,
+        false => FailureKind::Several,
     })?;
     Some(LocatedFailure {
         failing,
@@ -148,7 +148,7 @@ mod tests {
         (0..all).map(scene).collect()
     }
 
-    fn located(contents: &[Contents], fails: impl Fn(usize) -> Option<Failing>) -> Option<LocatedFailure> {
+    fn located(contents: &[Contents], fails: impl Fn(usize) -> Option<FailureKind>) -> Option<LocatedFailure> {
         let tried = |(number, contents)| TriedScene { scene: "a/b", failing: fails(number), steps: 7, contents };
         locate(&contents.iter().enumerate().map(tried).collect::<Vec<_>>())
     }
@@ -156,34 +156,42 @@ mod tests {
     #[test]
     fn what_all_that_fail_and_no_others_contain_is_told_with_its_counts() {
         let contents = scenes(24, 9, 85);
-        let found = located(&contents, |number| (number < 24).then_some(Failing::Crash)).expect("a place");
+        let found = located(&contents, |number| (number < 24).then_some(FailureKind::Crash)).expect("a place");
         assert_eq!((found.failed, found.with, found.without, found.step), (24, 24, 61, 7));
         // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other
         // place.
         assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))].map(ContentIndex::named));
-        let narrower = located(&contents, |number| (number < 9).then_some(Failing::Time)).expect("a place");
+        let narrower = located(&contents, |number| (number < 9).then_some(FailureKind::Time)).expect("a place");
         assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1))).named()], 9));
         let most =
-            located(&contents, |number| (number < 24 && number != 5).then_some(Failing::Crash)).expect("a place");
+            located(&contents, |number| (number < 24 && number != 5).then_some(FailureKind::Crash)).expect("a place");
         assert_eq!((most.failed, most.with, most.without), (23, 24, 61));
-        let mixed = |number: usize| if number.is_multiple_of(2) { Failing::Time } else { Failing::Memory };
+        let mixed = |number: usize| if number.is_multiple_of(2) { FailureKind::Time } else { FailureKind::Memory };
         let found = located(&contents, |number| (number < 24).then_some(mixed(number))).expect("a place");
-        assert_eq!(found.failing, Failing::Several);
+        assert_eq!(found.failing, FailureKind::Several);
     }
 
     #[test]
     fn weak_evidence_tells_nothing() {
         let contents = scenes(24, 9, 85);
         assert_eq!(located(&contents, |_| None), None);
-        assert_eq!(located(&contents, |_| Some(Failing::Crash)), None, "what always fails has no place");
-        assert_eq!(located(&contents, |number| (number == 3).then_some(Failing::Crash)), None, "once is nothing");
-        assert_eq!(located(&contents, |number| (number % 8 == 0).then_some(Failing::Crash)), None, "nothing in common");
-        assert_eq!(located(&contents, |number| (number < 24 || number == 60).then_some(Failing::Crash)), None);
+        assert_eq!(located(&contents, |_| Some(FailureKind::Crash)), None, "what always fails has no place");
+        assert_eq!(located(&contents, |number| (number == 3).then_some(FailureKind::Crash)), None, "once is nothing");
         assert_eq!(
-            located(&contents, |number| (number < 4).then_some(Failing::Crash)),
+            located(&contents, |number| (number % 8 == 0).then_some(FailureKind::Crash)),
+            None,
+            "nothing in common"
+        );
+        assert_eq!(located(&contents, |number| (number < 24 || number == 60).then_some(FailureKind::Crash)), None);
+        assert_eq!(
+            located(&contents, |number| (number < 4).then_some(FailureKind::Crash)),
             None,
             "most that contain it do not fail"
         );
-        assert_eq!(located(&scenes(3, 0, 4), |number| (number < 3).then_some(Failing::Crash)), None, "too few scenes");
+        assert_eq!(
+            located(&scenes(3, 0, 4), |number| (number < 3).then_some(FailureKind::Crash)),
+            None,
+            "too few scenes"
+        );
     }
 }

@@ -5,7 +5,7 @@ use fosssim_model::{
     assignments::{Assignment, Integrator},
     scene,
 };
-use fosssim_sandbox::Ended;
+use fosssim_sandbox::RunEnd;
 use std::{path::Path, time::Duration};
 
 /// The time on the processor and on the clock for two steps of two bodies, of which a program needs some milliseconds.
@@ -25,7 +25,7 @@ pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignme
         let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
         // One that crashes has taken the scene.
-        Ok(!matches!(outcome.ended, Ended::Exited(1..)))
+        Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
     };
     let mut integrators = Vec::new();
     for (_, integrator) in Integrator::NAMED {

@@ -101,13 +101,13 @@ pub fn assignment(name: &str) -> Option<Assignment> {
 }
 
 /// The scenes that a pattern takes: names and XML.
-pub type Found = Vec<(String, Vec<u8>)>;
+pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 
 /// Looks up the scenes of a suite; `files` those whose patterns are not of scenes that come with the program. Patterns
 /// that match nothing, scenes that can't be read or are not sound, are told at the pattern's position.
 fn resolved(
     suite: Suite,
-    files: &mut dyn FnMut(&str) -> Result<Found, String>,
+    files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
     problems: &mut Vec<(Position, String)>,
 ) -> Plan {
     let Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, groups: patterns } =
@@ -154,7 +154,7 @@ fn resolved(
 ///
 /// # Errors
 /// As [`config::read`]; also patterns that match nothing, and scenes that can't be read or are not sound.
-pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<Found, String>) -> Result<Plan, SuiteError> {
+pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
     // Patterns are looked up although something else is wrong: everything is told at once.
     let plan = resolved(suite, files, &mut problems);
@@ -165,9 +165,9 @@ pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<Found, String>)
     Err(SuiteError { problems })
 }
 
-fn embedded(pattern: &str) -> Result<Found, String> {
+fn embedded(pattern: &str) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
-    let found: Found = library::all_names()
+    let found: MatchingScenes = library::all_names()
         .filter(|name| library::takes(&glob, name))
         .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
         .collect();

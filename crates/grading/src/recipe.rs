@@ -3,9 +3,9 @@ use super::{
     cancellation::Cancellation,
     config::BuildStep,
     one_file::{ANOTHERS, OneFile, is_anothers},
-    result::Unusable,
-    staging::{CopyError, LARGEST_FOLDER, Staged, at, build, copied, open_in, unreadable},
-    temporary::Temporary,
+    result::UnusableReason,
+    staging::{CopyError, LARGEST_FOLDER, StagedProgram, at, build, copied, open_in, unreadable},
+    temporary::TemporaryFolder,
     upload,
 };
 use fosssim_intake::{ArchiveError, ArchiveLimits, FileKind};
@@ -40,19 +40,21 @@ impl Recipe<'_> {
     ///
     /// # Errors
     /// When the file can't be read for a fault of the machine, or the copy can't be written.
-    pub fn file(&self, path: &Path) -> Result<Staged, String> {
+    pub fn file(&self, path: &Path) -> Result<StagedProgram, String> {
         let why = match collect::open_file(path, true) {
             Ok((file, _)) => return self.opened(file, path),
-            Err(CollectError::NotRegular { what: "a folder", .. }) => Unusable::CouldNotStart(StartProblem::IsFolder),
-            Err(CollectError::NotRegular { .. }) => Unusable::CouldNotStart(StartProblem::NotAFile),
-            Err(CollectError::Missing { .. }) => Unusable::CouldNotStart(StartProblem::NotFound),
+            Err(CollectError::NotRegular { what: "a folder", .. }) => {
+                UnusableReason::CouldNotStart(StartProblem::IsFolder)
+            }
+            Err(CollectError::NotRegular { .. }) => UnusableReason::CouldNotStart(StartProblem::NotAFile),
+            Err(CollectError::Missing { .. }) => UnusableReason::CouldNotStart(StartProblem::NotFound),
             Err(CollectError::System { source, .. }) => match unreadable(path, source) {
-                CopyError::Submission(why) => Unusable::Unreadable(why),
+                CopyError::Submission(why) => UnusableReason::Unreadable(why),
                 CopyError::Ours(why) => return Err(why),
             },
-            Err(error) => Unusable::Unreadable(error.to_string()),
+            Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(Staged::refused(path, why))
+        Ok(StagedProgram::refused(path, why))
     }
 
     /// Stages as [`Recipe::file`] does, for a file at `name` in a folder that somebody else filled: a link that leads
@@ -61,10 +63,12 @@ impl Recipe<'_> {
     ///
     /// # Errors
     /// As for [`Recipe::file`].
-    pub fn file_in(&self, folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<Staged, String> {
+    pub fn file_in(&self, folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<StagedProgram, String> {
         let path = folder.join(name);
         let why = match open_in(folder, name) {
-            Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => Unusable::Unreadable(ANOTHERS.to_owned()),
+            Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => {
+                UnusableReason::Unreadable(ANOTHERS.to_owned())
+            }
             Ok(file) => return self.opened(file, &path),
             Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
                 Some(file) => return self.unpacked(file, &path),
@@ -75,16 +79,16 @@ impl Recipe<'_> {
             {
                 return Err(at(&path)(source));
             }
-            Err(error) => Unusable::Unreadable(error.to_string()),
+            Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(Staged::refused(&path, why))
+        Ok(StagedProgram::refused(&path, why))
     }
 
     /// Stages what is built of the sources in a folder, or in the archive that is all that it holds.
     ///
     /// # Errors
     /// Faults of ours or of the machine.
-    pub fn folder(&self, path: &Path) -> Result<Staged, String> {
+    pub fn folder(&self, path: &Path) -> Result<StagedProgram, String> {
         match (self.build, only_archive(path, true)?) {
             (None, _) => self.file(path),
             (_, Some(archive)) => self.unpacked(archive, path),
@@ -93,7 +97,7 @@ impl Recipe<'_> {
     }
 
     /// Stages an open file: an archive or a program.
-    fn opened(&self, mut file: File, path: &Path) -> Result<Staged, String> {
+    fn opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.unpacked(file, path),
             // The copy tells why the file can't be read.
@@ -102,8 +106,8 @@ impl Recipe<'_> {
     }
 
     /// Unpacks an archive, and stages what is in it: sources that are to be built, or else the program.
-    fn unpacked(&self, archive: File, path: &Path) -> Result<Staged, String> {
-        let folder = Temporary::make("upload").map_err(at(&std::env::temp_dir()))?;
+    fn unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
+        let folder = TemporaryFolder::make("upload").map_err(at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
         fs::DirBuilder::new().mode(0o700).create(&inside).map_err(at(&inside))?;
         let files = match fosssim_intake::unpack(archive, &inside, ArchiveLimits::USUAL) {
@@ -111,7 +115,7 @@ impl Recipe<'_> {
             Err(error @ (ArchiveError::Read(_) | ArchiveError::Folder(_))) => {
                 return Err(format!("{}: {error}", path.display()));
             }
-            Err(error) => return Ok(Staged::refused(path, Unusable::Unreadable(error.to_string()))),
+            Err(error) => return Ok(StagedProgram::refused(path, UnusableReason::Unreadable(error.to_string()))),
         };
         let top = fosssim_intake::top_folder(&inside, &files);
         if let Some(step) = self.build {
@@ -119,7 +123,7 @@ impl Recipe<'_> {
         }
         match open_in(&top, self.program) {
             Ok(file) => copied(file, &top.join(self.program)),
-            Err(_) => Ok(Staged::refused(path, upload::without(self.program, &top))),
+            Err(_) => Ok(StagedProgram::refused(path, upload::without(self.program, &top))),
         }
     }
 }
@@ -157,16 +161,16 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
 mod tests {
     use super::*;
     use crate::staging::{digest, make_odd_entries};
-    use fosssim_sandbox::{Ended, FakeRun};
+    use fosssim_sandbox::{FakeRun, RunEnd};
     use std::{os::unix::fs::PermissionsExt, path::PathBuf, process::Command};
 
     /// Stages as a suite without a build does.
-    fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<Staged, String>) -> Staged {
-        let (backend, cancellation) = (Backend::fake(|_| FakeRun::ended(Ended::Exited(0))), Cancellation::default());
+    fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<StagedProgram, String>) -> StagedProgram {
+        let (backend, cancellation) = (Backend::fake(|_| FakeRun::ended(RunEnd::Exited(0))), Cancellation::default());
         stage(Recipe { program: "FOSSSim", build: None, backend: &backend, cancellation: &cancellation }).unwrap()
     }
 
-    fn program(path: &Path) -> Staged {
+    fn program(path: &Path) -> StagedProgram {
         staged(|recipe| recipe.file(path))
     }
 
@@ -185,9 +189,9 @@ mod tests {
                 .is_some_and(|why| format!("{why:?}").contains("symbolic link"))
         );
         let staged = program(&folder.path().join("none"));
-        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::NotFound)));
+        assert_eq!(staged.refused, Some(UnusableReason::CouldNotStart(StartProblem::NotFound)));
         let staged = program(&sources);
-        assert_eq!(staged.refused, Some(Unusable::CouldNotStart(StartProblem::IsFolder)));
+        assert_eq!(staged.refused, Some(UnusableReason::CouldNotStart(StartProblem::IsFolder)));
     }
 
     /// Packs what lies in a folder, under this name beside it.

@@ -1,5 +1,5 @@
 //! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
-use super::{execute::Runner, located::Failing, task::SceneTask};
+use super::{execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 use fosssim_judge::{kept::LONGEST, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
@@ -7,7 +7,7 @@ use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
-use fosssim_sandbox::{Ended, TimeOf, processor_time};
+use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
 use fosssim_shrink::{EndTest, Observation, Reducer, SceneSize, SmallScene, WrongReason, beginnings};
 use std::{
     path::Path,
@@ -49,7 +49,7 @@ pub struct WrongScenes<'a> {
 
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
-pub struct Smallest {
+pub struct SmallestScene {
     /// Why the program is wrong on it.
     pub reason: WrongReason,
     /// The scene that it is made of.
@@ -70,7 +70,7 @@ pub struct WrongScene<'a> {
     /// The explanations of its trace.
     pub explanations: &'a [Explanation],
     /// How the program ended.
-    pub ended: &'a Ended,
+    pub ended: &'a RunEnd,
 }
 
 /// Returns the causes of wrong scenes: the likely mistakes, the ways in which the program does not end well, and a few
@@ -88,7 +88,7 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
     };
     for one in likely.iter().filter(|one| one.is_vote() || one.is_not_finite()) {
         let is_of = |wrong: &WrongScene<'_>| {
-            Failing::from_end(wrong.ended).is_none()
+            FailureKind::from_end(wrong.ended).is_none()
                 && match one.is_not_finite() {
                     true => wrong.explanations.iter().any(Explanation::is_not_finite),
                     false => is_named_in(one, wrong.explanations),
@@ -98,9 +98,9 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
             if one.is_not_finite() { WrongReason::NotFinite } else { WrongReason::Mistake(one.clone().into()) };
         take(Some(reason), &is_of);
     }
-    let mut ends: Vec<&Ended> = Vec::new();
+    let mut ends: Vec<&RunEnd> = Vec::new();
     for one in wrong {
-        if Failing::from_end(one.ended).is_some() && !ends.contains(&one.ended) {
+        if FailureKind::from_end(one.ended).is_some() && !ends.contains(&one.ended) {
             ends.push(one.ended);
         }
     }
@@ -137,7 +137,7 @@ impl Shrinker<'_> {
         &self,
         cause: &WrongScenes<'_>,
         progress: &mut dyn FnMut(&SceneSize),
-    ) -> Result<Option<Smallest>, String> {
+    ) -> Result<Option<SmallestScene>, String> {
         let mut tasks = cause.scenes.clone();
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
@@ -160,7 +160,7 @@ impl Shrinker<'_> {
             let seen = self.observe(&small.scene, &spent)?;
             // A program that does another thing each time shows nothing.
             if reason.holds(&small.scene, &seen) {
-                return Ok(Some(Smallest { reason, origin: task.name.clone(), small, seen, time: time() }));
+                return Ok(Some(SmallestScene { reason, origin: task.name.clone(), small, seen, time: time() }));
             }
         }
         Ok(None)
@@ -202,7 +202,7 @@ impl Shrinker<'_> {
 fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
-    let ended = Failing::from_end(&seen.ended).is_some() || examined.outcome.stop.is_some();
+    let ended = FailureKind::from_end(&seen.ended).is_some() || examined.outcome.stop.is_some();
     let behind = (ended && examined.outcome.steps_judged < scene.steps()).then_some(examined.outcome.steps_judged + 1);
     let wrong = examined.rulings.iter().zip(1..).filter(|(ruling, _)| ruling.wrong_by_fair && !ended);
     behind.into_iter().chain(wrong.map(|(_, step)| step)).collect()

@@ -8,7 +8,7 @@ use super::{
     execute::Runner,
     grader::{SubmissionGrading, called},
     result::SceneResult,
-    staging::Staged,
+    staging::StagedProgram,
     task::SceneTask,
     verdict::Verdict,
 };
@@ -63,7 +63,7 @@ impl SubmissionGrading<'_> {
         let (staged, reference) = (self.staged(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
         let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };
-        let run = |program: &Staged, words: &[String]| {
+        let run = |program: &StagedProgram, words: &[String]| {
             let runner = Runner {
                 run: words,
                 hints: Hints::Where,

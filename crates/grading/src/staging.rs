@@ -10,12 +10,12 @@ use super::{
     config::BuildStep,
     grade::Build,
     one_file::{OneFile, is_anothers},
-    result::{BuildEnd, Unusable},
-    temporary::Temporary,
+    result::{BuildEnd, UnusableReason},
+    temporary::TemporaryFolder,
 };
 use fosssim_intake::FileKind;
 use fosssim_sandbox::{
-    Backend, Ended, Job, Limits, Policy, ProgramIdentity, StartProblem,
+    Backend, Job, Limits, Policy, ProgramIdentity, RunEnd, StartProblem,
     collect::{self, CollectError, FolderEntry, OpenFolder},
     is_own,
 };
@@ -40,7 +40,7 @@ const AT_ONE_GO: usize = 1 << 16;
 
 /// A program to run, with its digest. The copy goes away with it.
 #[derive(Debug)]
-pub struct Staged {
+pub struct StagedProgram {
     /// Where it is.
     pub program: PathBuf,
     /// The digest of its bytes; of its path when there is nothing that can be run.
@@ -48,10 +48,10 @@ pub struct Staged {
     /// How it was built.
     pub build: Option<Build>,
     /// Why the submission itself can't be run: its own fault.
-    pub refused: Option<Unusable>,
+    pub refused: Option<UnusableReason>,
     /// Which file the copy is.
     pub(super) identity: Option<ProgramIdentity>,
-    _folder: Option<Temporary>,
+    _folder: Option<TemporaryFolder>,
 }
 
 /// Says which file or folder the operating system refuses, and why: our fault or the machine's.
@@ -90,7 +90,7 @@ pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
 ///
 /// # Errors
 /// When it can't be read or copied.
-pub fn reference(path: &Path) -> Result<Staged, String> {
+pub fn reference(path: &Path) -> Result<StagedProgram, String> {
     let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
     copied_as(OsStr::new("FOSSSimOracle"), file, path, &mut { LARGEST_FOLDER }).map_err(|error| match error {
         CopyError::Submission(why) => at(path)(io::Error::other(why)),
@@ -123,14 +123,14 @@ fn digest_of(file: File) -> Option<blake3::Hash> {
     hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok().then(|| hasher.finalize())
 }
 
-impl Staged {
+impl StagedProgram {
     /// Returns nothing that could be run.
     fn nothing(path: &Path) -> Self {
         let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
     }
 
-    pub(super) fn refused(path: &Path, why: Unusable) -> Self {
+    pub(super) fn refused(path: &Path, why: UnusableReason) -> Self {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
 
@@ -142,43 +142,43 @@ impl Staged {
 }
 
 /// Copies an open program, unless it is the grader itself.
-pub(super) fn copied(file: File, path: &Path) -> Result<Staged, String> {
+pub(super) fn copied(file: File, path: &Path) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = LARGEST_FOLDER;
     let why = match copied_as(path.file_name().unwrap_or_else(|| "program".as_ref()), file, path, &mut room) {
         Ok(staged) if !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) => {
             return Ok(staged);
         }
-        Ok(_) => Unusable::CouldNotStart(StartProblem::GradersOwn),
-        Err(CopyError::Submission(why)) => Unusable::Unreadable(why),
+        Ok(_) => UnusableReason::CouldNotStart(StartProblem::GradersOwn),
+        Err(CopyError::Submission(why)) => UnusableReason::Unreadable(why),
         Err(CopyError::Ours(why)) => return Err(why),
     };
-    Ok(Staged::refused(path, why))
+    Ok(StagedProgram::refused(path, why))
 }
 
 /// Copies an open program under this name into a folder of its own.
-fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<Staged, CopyError> {
-    let folder = Temporary::make("program").map_err(at(&std::env::temp_dir()))?;
+fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
+    let folder = TemporaryFolder::make("program").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
     // A program is executable, whether the way here kept the bit or not.
     let digest = copy_file(file, path, &copy, room, true)?;
     let identity = ProgramIdentity::from_path(&copy);
-    Ok(Staged { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
+    Ok(StagedProgram { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 
 /// Builds the sources in `folder`, in a copy, and stages the program that comes out of it. A build that fails is no
-/// error: [`Staged::build`] tells of it.
+/// error: [`StagedProgram::build`] tells of it.
 pub(super) fn build(
     sources: &Path,
     step: &BuildStep,
     backend: &Backend,
     cancellation: &Cancellation,
-) -> Result<Staged, String> {
-    let folder = Temporary::make("build").map_err(at(&std::env::temp_dir()))?;
+) -> Result<StagedProgram, String> {
+    let folder = TemporaryFolder::make("build").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join("submission");
     let failed = |end: BuildEnd, output: String| {
         let build = Some(Build { end, output });
-        Staged { build, ..Staged::nothing(&sources.join(&step.program)) }
+        StagedProgram { build, ..StagedProgram::nothing(&sources.join(&step.program)) }
     };
     match copy_sources(sources, &copy) {
         Err(CopyError::Submission(why)) => return Ok(failed(BuildEnd::Sources(why), String::new())),
@@ -217,14 +217,14 @@ pub(super) fn build(
     let (outcome, made) = running.wait_with_folder().map_err(|error| error.to_string())?;
     let printed = [&outcome.stdout.bytes[..], &outcome.stderr.bytes].concat();
     let output = beginning(&printed, KEPT_OUTPUT);
-    if outcome.ended != Ended::Exited(0) {
+    if outcome.ended != RunEnd::Exited(0) {
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
     // The build could have left a link to anything where the program should be.
     match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
-            Ok(Staged { build, ..copied(file, &copy.join(&step.program))? })
+            Ok(StagedProgram { build, ..copied(file, &copy.join(&step.program))? })
         }
         Err(CollectError::Missing { .. }) => Ok(failed(BuildEnd::MadeNo(step.program.clone()), output)),
         Err(error) => Ok(failed(BuildEnd::Unusable(error.to_string()), output)),
@@ -358,7 +358,7 @@ mod tests {
 
     use super::*;
 
-    fn program(path: &Path) -> Staged {
+    fn program(path: &Path) -> StagedProgram {
         let (file, _) = collect::open_file(path, true).unwrap();
         copied(file, path).unwrap()
     }
@@ -461,6 +461,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let copy = folder.path().join("FOSSSim");
         std::fs::copy(own, &copy).unwrap();
-        assert_eq!(program(&copy).refused, Some(Unusable::CouldNotStart(StartProblem::GradersOwn)));
+        assert_eq!(program(&copy).refused, Some(UnusableReason::CouldNotStart(StartProblem::GradersOwn)));
     }
 }

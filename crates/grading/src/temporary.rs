@@ -18,13 +18,13 @@ const PREFIX: &str = "fosssim-grader-";
 const LOCK: &str = "lock";
 /// A temporary folder of this grader's, closed to others. It is removed with all that programs left in it.
 #[derive(Debug)]
-pub(super) struct Temporary {
+pub(super) struct TemporaryFolder {
     path: PathBuf,
     // Removed after the folders in it.
     _grader: Arc<Grader>,
 }
 
-impl Temporary {
+impl TemporaryFolder {
     /// Makes one; its name begins with its purpose.
     pub(super) fn make(purpose: &str) -> io::Result<Self> {
         let grader = Grader::this()?;
@@ -43,7 +43,7 @@ impl Temporary {
     }
 }
 
-impl Drop for Temporary {
+impl Drop for TemporaryFolder {
     fn drop(&mut self) {
         // A folder that can't be removed now is swept away another day.
         drop(collect::remove_folder(&self.path));
@@ -53,17 +53,17 @@ impl Drop for Temporary {
 /// Working folders that no program has touched, for further runs: a new folder costs some file systems as much as a
 /// small run.
 #[derive(Debug, Default)]
-pub struct Folders(Mutex<Vec<Temporary>>);
+pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
 impl Folders {
     /// Returns a folder with nothing in it but what the grader left in one that was [kept](Self::keep).
-    pub(super) fn take(&self) -> io::Result<Temporary> {
+    pub(super) fn take(&self) -> io::Result<TemporaryFolder> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        kept.map_or_else(|| Temporary::make("run"), Ok)
+        kept.map_or_else(|| TemporaryFolder::make("run"), Ok)
     }
 
     /// Keeps a folder in which nobody but the grader has changed anything.
-    pub(super) fn keep(&self, folder: Temporary) {
+    pub(super) fn keep(&self, folder: TemporaryFolder) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(folder);
     }
 }
@@ -238,8 +238,8 @@ mod tests {
 
     #[test]
     fn folders_are_closed_to_others_and_go_away_with_their_last_user() {
-        let first = Temporary::make("program").unwrap();
-        let second = Temporary::make("run").unwrap();
+        let first = TemporaryFolder::make("program").unwrap();
+        let second = TemporaryFolder::make("run").unwrap();
         let grader = first.path().parent().unwrap().to_path_buf();
         assert_eq!(second.path().parent(), Some(&*grader));
         for path in [first.path(), second.path()] {

@@ -1,7 +1,7 @@
 //! The contents of a submission's folder, for messages about a submission without a program.
 use super::{
     names,
-    result::{FolderContents, Unusable},
+    result::{FolderContents, UnusableReason},
 };
 use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
@@ -13,12 +13,12 @@ const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
 
 /// Returns why there is nothing to run: what was looked for, and what is there instead.
-pub(super) fn without(program: &str, folder: &Path) -> Unusable {
+pub(super) fn without(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => found(program, &opened),
         Err(error) => FolderContents::Unreadable(error.to_string()),
     };
-    Unusable::NoProgram { sought: program.escape_debug().to_string(), found }
+    UnusableReason::NoProgram { sought: program.escape_debug().to_string(), found }
 }
 
 fn found(program: &str, folder: &OpenFolder) -> FolderContents {
@@ -70,7 +70,7 @@ mod tests {
     fn what_is_there_instead_of_the_program_is_listed_and_looked_through() {
         let folder = tempfile::tempdir().unwrap();
         let found = || match without("FOSSSim", folder.path()) {
-            Unusable::NoProgram { sought, found } if sought == "FOSSSim" => found,
+            UnusableReason::NoProgram { sought, found } if sought == "FOSSSim" => found,
             other => panic!("{other:?}"),
         };
         let others = |names: &[&str], elsewhere: Option<&str>| FolderContents::Others {
@@ -92,6 +92,6 @@ mod tests {
         let FolderContents::Others { names, more, .. } = found() else { panic!("it holds something") };
         assert_eq!((names[0].as_str(), names[1].as_str(), more), ("a0\\n", "a1\\n", 6));
         let nowhere = without("FOSSSim", Path::new("/nowhere"));
-        assert!(matches!(nowhere, Unusable::NoProgram { found: FolderContents::Unreadable(_), .. }));
+        assert!(matches!(nowhere, UnusableReason::NoProgram { found: FolderContents::Unreadable(_), .. }));
     }
 }

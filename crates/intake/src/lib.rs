@@ -55,7 +55,7 @@ impl ArchiveLimits {
     pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
     /// Sets the limits for an archive of this size: what unpacks to 200 times as much is a bomb, unless it is small.
-    fn of_size(self, packed: u64) -> Self {
+    fn for_size(self, packed: u64) -> Self {
         Self { bytes: self.bytes.min(packed.saturating_mul(200).max(50 << 20)), ..self }
     }
 }
@@ -149,7 +149,7 @@ struct Walk<'a> {
 fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<PathBuf>, ArchiveError> {
     let packed = file.metadata().map_err(ArchiveError::Read)?.len();
     let mut walk = Walk {
-        limits: limits.of_size(packed),
+        limits: limits.for_size(packed),
         folder,
         entries: 0,
         bytes: 0,

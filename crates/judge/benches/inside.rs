@@ -145,7 +145,7 @@ fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
 /// The trace with coefficients that follow from its own and their numbers in a record.
 fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
     let layout = Layout::for_scene(scene);
-    let (mut reader, mut writer) = (Reader::of_slice(trace, layout), Writer::new(Vec::new(), layout));
+    let (mut reader, mut writer) = (Reader::from_slice(trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a sound trace") {
         for (number, place) in frame.polynomials.coefficients.iter_mut().enumerate() {

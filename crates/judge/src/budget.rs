@@ -81,7 +81,7 @@ impl<'a> Budget<'a> {
         if std::mem::replace(&mut self.is_wide, true) {
             return false;
         }
-        let own = of_scene(self.scene).saturating_mul(self.factor).saturating_sub(self.at_least);
+        let own = work_for_scene(self.scene).saturating_mul(self.factor).saturating_sub(self.at_least);
         self.rest = self.rest.saturating_add(own);
         own > 0
     }
@@ -99,7 +99,7 @@ fn least(scene: &Scene) -> u64 {
 }
 
 /// Returns the work of the scene's own run.
-fn of_scene(scene: &Scene) -> u64 {
+fn work_for_scene(scene: &Scene) -> u64 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     for _ in 0..scene.steps() {
         if simulation.step(&mut ()).is_err() {
@@ -211,7 +211,7 @@ mod tests {
     fn what_the_scene_itself_takes_is_always_allowed() {
         let scene = posts(0.0, 20_000);
         let trace = written(&scene, &run(&scene, ()));
-        let floor = of_scene(&scene) / 2;
+        let floor = work_for_scene(&scene) / 2;
         for fair in [false, true] {
             let outcome = judged(floor, &scene, &trace, fair, 2);
             assert_eq!((given_up(&outcome), outcome.parity.overall), (None, Overall::Passed));

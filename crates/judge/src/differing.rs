@@ -15,13 +15,13 @@ const FLOOR: f64 = 1e-13;
 #[must_use]
 pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
-        let holds = |power: &usize| of(expected, *power) != 0.0 && agrees(expected, actual, *power, factor);
+        let holds = |power: &usize| coefficient(expected, *power) != 0.0 && agrees(expected, actual, *power, factor);
         (0..expected.len()).filter(holds).count()
     };
     // One coefficient always agrees with its own ratio, which says nothing.
     let mut best = (agreeing(1.0).max(1), 1.0);
     for power in (0..expected.len().min(actual.len())).rev() {
-        let ratio = of(actual, power) / of(expected, power);
+        let ratio = coefficient(actual, power) / coefficient(expected, power);
         if ratio > 0.0 && ratio.is_finite() {
             let count = agreeing(ratio);
             if count > best.0 {
@@ -41,12 +41,12 @@ pub fn differing(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
 
 fn agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
     let sum: f64 = expected.iter().map(|coefficient| coefficient.abs()).sum();
-    let right = factor * of(expected, power);
-    (of(actual, power) - right).abs() <= ALIKE * right.abs() + FLOOR * factor * sum
+    let right = factor * coefficient(expected, power);
+    (coefficient(actual, power) - right).abs() <= ALIKE * right.abs() + FLOOR * factor * sum
 }
 
 /// Returns the coefficient of a power; 0 where the list does not reach it.
-fn of(coefficients: &[f64], power: usize) -> f64 {
+fn coefficient(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }
 

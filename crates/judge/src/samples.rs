@@ -37,7 +37,7 @@ pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
         simulation.step(&mut (&mut steer, &mut recorder)).expect("a step");
     }
     let trace = recorder.finish().expect("written").0;
-    let mut reader = Reader::of_slice(&trace, layout);
+    let mut reader = Reader::from_slice(&trace, layout);
     let (mut frames, mut frame) = (Vec::new(), Frame::default());
     while reader.next(&mut frame).expect("sound") {
         frames.push(frame.clone());

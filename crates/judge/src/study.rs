@@ -10,7 +10,7 @@ use crate::{
 };
 use fosssim_model::sim::{Decision, PairMotion, PointMotion, Time};
 use fosssim_num::{
-    bounded::{Bounded, Bounded2},
+    bounded::{BoundedValue, BoundedVector},
     first_time::{first_time, positive_set},
     interval::{Interval, Intervals},
     polynomial::{MAX_COEFFICIENTS, Polynomial},
@@ -166,7 +166,7 @@ impl Study {
 }
 
 /// Returns the course's approach polynomial with the right t^3 coefficient, if that is another one.
-fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> Option<Polynomial> {
+fn right_approach(polynomials: &[Polynomial], expected: &formulas::ExpectedPolynomials) -> Option<Polynomial> {
     let (course, right) = (expected.polynomial(3), expected.other_form(3)?);
     // The power t^3 of a quintic.
     let cubic = MAX_COEFFICIENTS - 4;
@@ -183,8 +183,8 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::Expected) -> 
 /// the one at the end may be off by a rounding.
 impl From<PointMotion> for formulas::BoundedPointMotion {
     fn from(point: PointMotion) -> Self {
-        let start = Bounded2::exact(point.start);
-        let mut shift = Bounded2::rounded(point.start + point.shift) - start;
+        let start = BoundedVector::exact(point.start);
+        let mut shift = BoundedVector::rounded(point.start + point.shift) - start;
         (shift.x.value, shift.y.value) = (point.shift.x, point.shift.y);
         Self { start, shift }
     }
@@ -194,12 +194,12 @@ impl From<PointMotion> for formulas::BoundedPointMotion {
 impl From<&PairMotion> for formulas::BoundedPairMotion {
     fn from(motion: &PairMotion) -> Self {
         let way = formulas::BoundedPointMotion::from;
-        let sum = |radii: [f64; 2]| Bounded::exact(radii[0]) + Bounded::exact(radii[1]);
+        let sum = |radii: [f64; 2]| BoundedValue::exact(radii[0]) + BoundedValue::exact(radii[1]);
         match *motion {
             PairMotion::Particles { centers, radii } => Self::Particles(centers.map(way), sum(radii)),
             PairMotion::Edge { center, ends, radii } => Self::Edge([center, ends[0], ends[1]].map(way), sum(radii)),
             PairMotion::HalfPlane { center, radius, point, normal } => {
-                Self::HalfPlane(way(center), Bounded::exact(radius), point, normal)
+                Self::HalfPlane(way(center), BoundedValue::exact(radius), point, normal)
             }
         }
     }

@@ -16,7 +16,7 @@ use super::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, State, Steer, Wanted, pairs},
+    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, State, Steer, WantedPairs, pairs},
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
@@ -281,8 +281,8 @@ impl Observer for Tally<'_> {
     }
 
     #[inline]
-    fn wanted(&mut self) -> Wanted<'_> {
-        Wanted::Bytes(&mut self.buffers.own)
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        WantedPairs::Bytes(&mut self.buffers.own)
     }
 
     /// Compares the pass's polynomials.

@@ -47,7 +47,7 @@ impl WatchedScene {
     ///
     /// # Errors
     /// When one can't be read, or there is none.
-    pub fn of_folder(folder: &Path) -> anyhow::Result<Vec<Self>> {
+    pub fn from_folder(folder: &Path) -> anyhow::Result<Vec<Self>> {
         let files =
             scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;
         ensure!(!files.is_empty(), "{}: no group of this folder holds a scene", folder.display());

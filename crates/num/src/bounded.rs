@@ -1,7 +1,7 @@
 //! Numbers that carry a bound on their rounding error: running error analysis.
 //!
-//! A [`Bounded`] is a computed value with a count `units`: whatever order a correct program evaluates the same formula
-//! in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
+//! A [`BoundedValue`] is a computed value with a count `units`: whatever order a correct program evaluates the same
+//! formula in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
 //! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3),
 //! with the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the
 //! bound also covers other orders of summation. Nothing of this reaches a trace.
@@ -17,7 +17,7 @@ pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
 /// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value); of one number, or of one
 /// in each [lane](super::lanes).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Bounded<N = f64> {
+pub struct BoundedValue<N = f64> {
     /// The computed value.
     pub value: N,
     /// Sum of the moduli of everything that was rounded on the way, weighted by its effect; at least 0, or NaN.
@@ -25,9 +25,9 @@ pub struct Bounded<N = f64> {
 }
 
 /// A vector of bounded components.
-pub type Bounded2<N = f64> = Plane<Bounded<N>>;
+pub type BoundedVector<N = f64> = Plane<BoundedValue<N>>;
 
-impl Bounded {
+impl BoundedValue {
     /// Returns a number without error, such as a factor of a formula.
     #[inline]
     #[must_use]
@@ -43,23 +43,23 @@ impl Bounded {
     }
 }
 
-impl Bounded2 {
+impl BoundedVector {
     /// Returns a vector without error.
     #[inline]
     #[must_use]
     pub fn exact(v: Vec2) -> Self {
-        Self { x: Bounded::exact(v.x), y: Bounded::exact(v.y) }
+        Self { x: BoundedValue::exact(v.x), y: BoundedValue::exact(v.y) }
     }
 
     /// Returns a vector whose components may each be off by one rounding.
     #[inline]
     #[must_use]
     pub fn rounded(v: Vec2) -> Self {
-        Self { x: Bounded::rounded(v.x), y: Bounded::rounded(v.y) }
+        Self { x: BoundedValue::rounded(v.x), y: BoundedValue::rounded(v.y) }
     }
 }
 
-impl<N: Number + Modulus> Add for Bounded<N> {
+impl<N: Number + Modulus> Add for BoundedValue<N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, other: Self) -> Self {
@@ -68,7 +68,7 @@ impl<N: Number + Modulus> Add for Bounded<N> {
     }
 }
 
-impl<N: Number + Modulus> Sub for Bounded<N> {
+impl<N: Number + Modulus> Sub for BoundedValue<N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
@@ -77,7 +77,7 @@ impl<N: Number + Modulus> Sub for Bounded<N> {
     }
 }
 
-impl<N: Number + Modulus> Mul for Bounded<N> {
+impl<N: Number + Modulus> Mul for BoundedValue<N> {
     type Output = Self;
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
@@ -88,7 +88,7 @@ impl<N: Number + Modulus> Mul for Bounded<N> {
 }
 
 /// A divisor of 0 gives what the division gives, and a bound that is infinite or NaN.
-impl Div for Bounded {
+impl Div for BoundedValue {
     type Output = Self;
     #[inline]
     fn div(self, other: Self) -> Self {
@@ -98,7 +98,7 @@ impl Div for Bounded {
     }
 }
 
-impl<N: Number> Neg for Bounded<N> {
+impl<N: Number> Neg for BoundedValue<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
@@ -107,12 +107,12 @@ impl<N: Number> Neg for Bounded<N> {
 }
 
 /// A factor without error.
-impl Mul<Bounded> for f64 {
-    type Output = Bounded;
+impl Mul<BoundedValue> for f64 {
+    type Output = BoundedValue;
     #[inline(always)]
-    fn mul(self, other: Bounded) -> Bounded {
+    fn mul(self, other: BoundedValue) -> BoundedValue {
         let value = self * other.value;
-        Bounded { value, bound: self.abs() * other.bound + value.abs() }
+        BoundedValue { value, bound: self.abs() * other.bound + value.abs() }
     }
 }
 
@@ -157,18 +157,18 @@ impl Neg for Magnitude {
 }
 
 /// A factor without error.
-impl Mul<Bounded<Magnitude>> for f64 {
-    type Output = Bounded<Magnitude>;
-    fn mul(self, other: Bounded<Magnitude>) -> Bounded<Magnitude> {
+impl Mul<BoundedValue<Magnitude>> for f64 {
+    type Output = BoundedValue<Magnitude>;
+    fn mul(self, other: BoundedValue<Magnitude>) -> BoundedValue<Magnitude> {
         let value = Magnitude(self.abs() * other.value.0);
-        Bounded { value, bound: Magnitude(self.abs() * other.bound.0) + value }
+        BoundedValue { value, bound: Magnitude(self.abs() * other.bound.0) + value }
     }
 }
 
-impl<N: Number + Modulus> Mul<Bounded2<N>> for Bounded<N> {
-    type Output = Bounded2<N>;
+impl<N: Number + Modulus> Mul<BoundedVector<N>> for BoundedValue<N> {
+    type Output = BoundedVector<N>;
     #[inline(always)]
-    fn mul(self, other: Bounded2<N>) -> Bounded2<N> {
+    fn mul(self, other: BoundedVector<N>) -> BoundedVector<N> {
         Plane { x: self * other.x, y: self * other.y }
     }
 }
@@ -180,7 +180,7 @@ mod tests {
     /// The rules of running error analysis on numbers that can be reckoned by hand.
     #[test]
     fn each_operation_has_the_bound_of_its_rule() {
-        let number = |value: f64, bound: f64| Bounded { value, bound };
+        let number = |value: f64, bound: f64| BoundedValue { value, bound };
         let (a, b) = (number(-12.0, 5.0), number(4.0, 3.0));
         assert_eq!(a + b, number(-8.0, 5.0 + 3.0 + 12.0 + 4.0));
         assert_eq!(a - b, number(-16.0, 5.0 + 3.0 + 12.0 + 4.0));
@@ -188,13 +188,13 @@ mod tests {
         assert_eq!(a / b, number(-3.0, (5.0 + 3.0 * 3.0) / 4.0 + 3.0));
         assert_eq!(-2.0 * a, number(24.0, 2.0 * 5.0 + 24.0));
         assert_eq!(-a, number(12.0, 5.0));
-        let size = |value: f64, bound: f64| Bounded { value: Magnitude(value), bound: Magnitude(bound) };
+        let size = |value: f64, bound: f64| BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
         let (c, d) = (size(12.0, 5.0), size(4.0, 3.0));
         assert_eq!(c + d, size(16.0, 24.0));
         assert_eq!(c - d, size(16.0, 24.0));
         assert_eq!(c * d, size(48.0, 104.0));
         assert_eq!(-2.0 * c, size(24.0, 34.0));
-        let vector = Bounded2::rounded(Vec2::new(-12.0, 4.0));
+        let vector = BoundedVector::rounded(Vec2::new(-12.0, 4.0));
         assert_eq!((vector.x, vector.y), (number(-12.0, 12.0), number(4.0, 4.0)));
         let twice = b * vector;
         assert_eq!((twice.x, twice.y), (b * vector.x, b * vector.y));
@@ -203,7 +203,7 @@ mod tests {
     /// `(a + b) - a` with a large `a`: the rest of `b` may be off by a rounding of `a`, and the bound says so.
     #[test]
     fn cancelled_terms_keep_their_weight() {
-        let (a, b) = (Bounded::exact(1e10), Bounded::exact(0.1));
+        let (a, b) = (BoundedValue::exact(1e10), BoundedValue::exact(0.1));
         let left = (a + b) - a;
         assert!((left.value - 0.1).abs() > 1e-8);
         assert!((left.value - 0.1).abs() <= left.bound * UNIT_ROUNDOFF);
@@ -212,8 +212,8 @@ mod tests {
     /// Neither value nor bound is larger than what sizes say, whatever the signs of the inputs.
     #[test]
     fn sizes_are_the_most_that_values_and_bounds_can_be() {
-        let number = |value: f64| Bounded { value, bound: 2.0 * value.abs() };
-        let size = |value: f64| Bounded { value: Magnitude(value), bound: Magnitude(2.0 * value) };
+        let number = |value: f64| BoundedValue { value, bound: 2.0 * value.abs() };
+        let size = |value: f64| BoundedValue { value: Magnitude(value), bound: Magnitude(2.0 * value) };
         let (a, b, c) = (size(0.7), size(1.3), size(0.1));
         let most = -2.0 * (a * b - c * a) + b;
         for signs in 0..8 {
@@ -226,17 +226,17 @@ mod tests {
 
     #[test]
     fn a_quotient_knows_its_condition() {
-        let quotient = Bounded::rounded(1.0) / Bounded { value: 1e-8, bound: 1.0 };
+        let quotient = BoundedValue::rounded(1.0) / BoundedValue { value: 1e-8, bound: 1.0 };
         assert_eq!(quotient.value, 1e8);
         assert!(quotient.bound >= 1e16);
-        assert!(!(Bounded::rounded(1.0) / Bounded::exact(0.0)).bound.is_finite());
+        assert!(!(BoundedValue::rounded(1.0) / BoundedValue::exact(0.0)).bound.is_finite());
     }
 
     /// Two orders of summing the same dot product differ by less than the bounds allow.
     #[test]
     fn other_orders_of_evaluation_stay_within_the_bound() {
         let (a, b) = (Vec2::new(0.1, -0.3), Vec2::new(0.7, 0.233_333));
-        let bounded = Bounded2::exact(a).dot(Bounded2::exact(b));
+        let bounded = BoundedVector::exact(a).dot(BoundedVector::exact(b));
         let otherwise = a.y * b.y + a.x * b.x;
         assert_eq!(bounded.value, a.dot(&b));
         assert!((bounded.value - otherwise).abs() <= bounded.bound * UNIT_ROUNDOFF);

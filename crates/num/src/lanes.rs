@@ -112,7 +112,7 @@ impl Instructions {
     /// Does a piece of work with these instructions.
     #[inline]
     pub fn run<W: Work>(self, work: W) -> W::Output {
-        self.0.dispatch(Dispatched(work))
+        self.0.dispatch(DispatchedWork(work))
     }
 }
 
@@ -125,9 +125,9 @@ pub trait Work {
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
-struct Dispatched<W>(W);
+struct DispatchedWork<W>(W);
 
-impl<W: Work> pulp::WithSimd for Dispatched<W> {
+impl<W: Work> pulp::WithSimd for DispatchedWork<W> {
     type Output = W::Output;
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> W::Output {

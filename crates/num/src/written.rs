@@ -48,7 +48,7 @@ impl schemars::JsonSchema for Number {
 }
 
 /// A type that is made of numbers and written as such.
-pub trait Written: Sized {
+pub trait WrittenNumbers: Sized {
     /// The value's serialized form.
     type Form: Serialize + DeserializeOwned;
     /// Writes the value in its form.
@@ -57,7 +57,7 @@ pub trait Written: Sized {
     fn read(form: Self::Form) -> Self;
 }
 
-impl Written for f64 {
+impl WrittenNumbers for f64 {
     type Form = Number;
     fn write(&self) -> Number {
         Number(*self)
@@ -67,7 +67,7 @@ impl Written for f64 {
     }
 }
 
-impl Written for [f64; 2] {
+impl WrittenNumbers for [f64; 2] {
     type Form = [Number; 2];
     fn write(&self) -> [Number; 2] {
         self.map(Number)
@@ -77,7 +77,7 @@ impl Written for [f64; 2] {
     }
 }
 
-impl Written for Vec2 {
+impl WrittenNumbers for Vec2 {
     type Form = [Number; 2];
     fn write(&self) -> [Number; 2] {
         [Number(self.x), Number(self.y)]
@@ -87,7 +87,7 @@ impl Written for Vec2 {
     }
 }
 
-impl Written for Vec<f64> {
+impl WrittenNumbers for Vec<f64> {
     type Form = Vec<Number>;
     fn write(&self) -> Vec<Number> {
         self.iter().copied().map(Number).collect()
@@ -97,7 +97,7 @@ impl Written for Vec<f64> {
     }
 }
 
-impl<T: Written> Written for Option<T> {
+impl<T: WrittenNumbers> WrittenNumbers for Option<T> {
     type Form = Option<T::Form>;
     fn write(&self) -> Self::Form {
         self.as_ref().map(T::write)
@@ -111,7 +111,7 @@ impl<T: Written> Written for Option<T> {
 ///
 /// # Errors
 /// Those of the serializer.
-pub fn serialize<T: Written, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
+pub fn serialize<T: WrittenNumbers, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
     value.write().serialize(serializer)
 }
 
@@ -119,6 +119,6 @@ pub fn serialize<T: Written, S: Serializer>(value: &T, serializer: S) -> Result<
 ///
 /// # Errors
 /// Those of the deserializer, and where a text is no number.
-pub fn deserialize<'de, T: Written, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+pub fn deserialize<'de, T: WrittenNumbers, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     T::Form::deserialize(deserializer).map(T::read)
 }

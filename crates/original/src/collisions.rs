@@ -9,10 +9,12 @@ pub(crate) const HEADER: &str = "Collision Detection Error: \n";
 /// Returns the line about one collision; `None` when the remark is about polynomials.
 pub(crate) fn line(remark: &Remark) -> Option<String> {
     match remark {
-        Remark::Missed(expected) => Some(format!("  Missed collision: {}\n", words(&LoggedImpulse::from(*expected)))),
-        Remark::Superfluous(actual) => Some(format!("  Superfluous collision: {}\n", words(actual))),
+        Remark::Missed(expected) => {
+            Some(format!("  Missed collision: {}\n", describe(&LoggedImpulse::from(*expected))))
+        }
+        Remark::Superfluous(actual) => Some(format!("  Superfluous collision: {}\n", describe(actual))),
         Remark::WrongNormal { actual, expected } => {
-            let (actual, expected) = (words(actual), words(&LoggedImpulse::from(*expected)));
+            let (actual, expected) = (describe(actual), describe(&LoggedImpulse::from(*expected)));
             Some(format!("  Collision with wrong normal: {actual} should be {expected}\n"))
         }
         Remark::Polynomials(..) => None,
@@ -20,7 +22,7 @@ pub(crate) fn line(remark: &Remark) -> Option<String> {
 }
 
 /// Returns `Particle A - Edge B with normal = X Y`; nothing for an unknown kind of pair.
-fn words(impulse: &LoggedImpulse) -> String {
+fn describe(impulse: &LoggedImpulse) -> String {
     let Some(kind) = impulse.kind() else { return String::new() };
     let second = kind.second_of_original();
     let normal = direction(impulse.normal);
@@ -43,10 +45,10 @@ mod tests {
 
     #[test]
     fn pairs_are_named_and_only_the_first_component_is_padded() {
-        assert_eq!(words(&logged(0, 0.4, 0.0)), "Particle 3 - Particle -7 with normal = 0.4 0");
-        assert_eq!(words(&logged(1, 0.25, -1e-7)), "Particle 3 - Edge -7 with normal =   0.25 -1e-07");
+        assert_eq!(describe(&logged(0, 0.4, 0.0)), "Particle 3 - Particle -7 with normal = 0.4 0");
+        assert_eq!(describe(&logged(1, 0.25, -1e-7)), "Particle 3 - Edge -7 with normal =   0.25 -1e-07");
         assert_eq!(
-            words(&logged(2, -0.0, f64::NAN.copysign(-1.0))),
+            describe(&logged(2, -0.0, f64::NAN.copysign(-1.0))),
             "Particle 3 - Halfplane -7 with normal =   -0 -nan"
         );
     }

@@ -10,7 +10,7 @@
 //!
 //! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the
 //! program that a run touches. So this is a crate of its own, compiled at the full level, and uses nothing that few
-//! runs need: its caller supplies the drawing of pictures and the words of messages ([`Outside`]).
+//! runs need: its caller supplies the drawing of pictures and the words of messages ([`Services`]).
 //!
 //! A program becomes the drop-in, where its name or its first word says so:
 //!
@@ -77,7 +77,7 @@ fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
 ///
 /// # Errors
 /// Other words, for other commands; the program's own name first.
-pub fn run_if_meant(outside: &dyn Outside) -> Result<ExitCode, Vec<OsString>> {
+pub fn run_if_meant(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
     let words: Vec<OsString> = env::args_os().collect();
     match meant(&words) {
         Some((program, words)) => {
@@ -89,7 +89,7 @@ pub fn run_if_meant(outside: &dyn Outside) -> Result<ExitCode, Vec<OsString>> {
 }
 
 /// The services that the drop-in needs from the program around it.
-pub trait Outside {
+pub trait Services {
     /// Prepares the run, before anything else is done.
     fn prepare(&self);
 
@@ -111,7 +111,7 @@ pub trait Pictures {
 
 /// Runs the drop-in; `program` is the name that its messages show, `words` are the arguments.
 #[must_use]
-pub fn main(program: &[u8], words: &[OsString], outside: &dyn Outside) -> ExitCode {
+pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitCode {
     let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
     let code = match arguments::parse(program, &words) {
         Ok(arguments) => run::run(&arguments, &words, outside),

@@ -1,6 +1,6 @@
 //! Recording and grading as the original does them (oracle-behavior.md 2).
 use crate::{
-    Outside, Pictures,
+    Pictures, Services,
     arguments::Arguments,
     transcript::{Heading, Task, Transcript},
     verdict::residual_file,
@@ -27,7 +27,7 @@ use std::{
 const FAILED: u8 = 1;
 
 /// Runs with parsed arguments; `words` are the raw ones. Returns the exit code.
-pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Outside) -> u8 {
+pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Services) -> u8 {
     if arguments.input.is_some() && arguments.output.is_some() {
         return complain(INPUT_AND_OUTPUT);
     }

@@ -10,14 +10,14 @@ use super::{
     table::{Align, Cell, Table},
     view::{Number, document, numbers, view},
 };
-use fosssim_evidence::Logged;
+use fosssim_evidence::CallLog;
 use fosssim_findings::Role;
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
     study::{Answer, Curve, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion};
-use fosssim_num::{interval::Interval, polynomial::Polynomial, written::Written};
+use fosssim_num::{interval::Interval, polynomial::Polynomial, written::WrittenNumbers};
 use serde::Serialize;
 
 /// The version of the report's shape.
@@ -39,7 +39,7 @@ pub struct Place<'a> {
     /// The number of passes that the reference makes in this step.
     pub passes: usize,
     /// The trace's log of this call.
-    pub logged: &'a Logged,
+    pub logged: &'a CallLog,
 }
 
 /// A detection call to be shown.
@@ -112,7 +112,7 @@ impl Detect<'_> {
         if let Some(place) = self.place.filter(|place| place.trace.is_some() && place.pass.is_some()) {
             text += &format!("\n{}\n", style.paint(Look::Strong, "What the trace logged"));
             match place.logged {
-                Logged::These(logged) => {
+                CallLog::These(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
                         let expected = curve.logged.coefficients();
                         // Their lengths may differ by what the course's library drops.
@@ -124,10 +124,10 @@ impl Detect<'_> {
                         };
                     }
                 }
-                Logged::Nothing => {
+                CallLog::Nothing => {
                     text += &format!("  {}\n", style.paint(Look::Bad, "nothing for this pair in this pass"))
                 }
-                Logged::Unknown => {
+                CallLog::Unknown => {
                     text += "  it can't be told which of its polynomials are this pair's: it logged another number of \
                         them\n";
                 }
@@ -362,9 +362,9 @@ view! {
         /// for it, with an empty list for one that is missing. Null for the reference's run, and where it logged
         /// another number of polynomials in which this call's can't be told.
         logged: Option<Vec<Vec<Number>>> = match place.logged {
-            Logged::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
-            Logged::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
-            Logged::Nothing | Logged::Unknown => None,
+            CallLog::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
+            CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
+            CallLog::Nothing | CallLog::Unknown => None,
         },
     }
 }

@@ -15,7 +15,7 @@ const LISTED: usize = 3;
 /// Returns the lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
 #[must_use]
 pub fn lines(explanations: &[Explanation]) -> Vec<String> {
-    explanations.iter().flat_map(of_one).collect()
+    explanations.iter().flat_map(explanation_lines).collect()
 }
 
 /// Returns the sentence about the likeliest mistake, or about those that explain everything together, for formats with
@@ -65,12 +65,12 @@ impl From<&Explanation> for ExplanationParts {
         if !explanation.is_unfinished() {
             details.extend(others(&explanation.same_as));
         }
-        let example = explanation.example.as_ref().map(of_example).unwrap_or_default();
+        let example = explanation.example.as_ref().map(example_lines).unwrap_or_default();
         Self { is_likely, what: what(explanation), evidence, details, example }
     }
 }
 
-fn of_one(explanation: &Explanation) -> Vec<String> {
+fn explanation_lines(explanation: &Explanation) -> Vec<String> {
     let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::from(explanation);
     let likely = if is_likely { "likely mistake: " } else { "" };
     let evidence = evidence.map_or_else(String::new, |evidence| format!(" ({evidence})"));
@@ -98,7 +98,7 @@ fn listed(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 
-fn of_example(example: &Example) -> Vec<String> {
+fn example_lines(example: &Example) -> Vec<String> {
     let given: Vec<String> =
         example.given.iter().map(|given| format!("{} = {}", key(&given.input), vector(&given.value))).collect();
     let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];

@@ -109,7 +109,7 @@ impl Format {
     /// Returns the part of a grade that goes into a document for this reader. Reports for students leave out the groups
     /// that students do not see at once, unless the platform that asks for them hides these itself (`platform_hides`).
     #[must_use]
-    pub fn told(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
+    pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
             // Students read these in any case. They hide what is hidden on their own; so does a page.
             (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => told_to_students(grade),

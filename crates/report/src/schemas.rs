@@ -8,14 +8,14 @@ use serde_json::Value;
 #[must_use]
 pub fn all() -> [(&'static str, Schema); 4] {
     [
-        ("check", of::<CheckView<'_>>("check --format json")),
-        ("detect", of::<DetectView<'_>>("detect --format json")),
-        ("explain", of::<DiagnosisView<'_>>("explain --format json")),
-        ("grade", of::<GradeDocument>("grade --format json")),
+        ("check", schema_of::<CheckView<'_>>("check --format json")),
+        ("detect", schema_of::<DetectView<'_>>("detect --format json")),
+        ("explain", schema_of::<DiagnosisView<'_>>("explain --format json")),
+        ("grade", schema_of::<GradeDocument>("grade --format json")),
     ]
 }
 
-fn of<Document: JsonSchema>(command: &str) -> Schema {
+fn schema_of<Document: JsonSchema>(command: &str) -> Schema {
     let settings = SchemaSettings::draft2020_12().for_serialize().with_transform(RecursiveTransform(join_lines));
     let generator = settings.into_generator();
     let mut schema = generator.into_root_schema_for::<Document>();

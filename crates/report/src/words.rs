@@ -11,8 +11,8 @@ use fosssim_findings::{
     FindingPlace, Grade, SubmissionFault, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding},
     result::{
-        Activity, BadTrace, BuildEnd, Ended, Failure, FolderContents, Limit, NotRunReason, Reached, Reason, SavedTrace,
-        SceneResult, Unusable, Wrong,
+        Activity, BadTrace, BuildEnd, Failure, FolderContents, Limit, NotRunReason, ProgramProgress, Reason, RunEnd,
+        SavedTrace, SceneResult, UnusableReason, WrongTrace,
     },
 };
 use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
@@ -31,23 +31,23 @@ const NOT_FOUND: i32 = 127;
 pub fn summary(result: &SceneResult) -> String {
     match &result.reason {
         Reason::Right => share::right(result.steps, number),
-        Reason::Wrong(wrong) => of_wrong(wrong, result.steps),
-        Reason::Trace(bad) => of_bad_trace(bad),
+        Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
+        Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
         Reason::Program(reached) => ending(result) + &how_far(*reached, result.steps),
-        Reason::LeftOut(why) => of_left_out(*why),
+        Reason::LeftOut(why) => describe_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
         Reason::Withheld => "details of single scenes are not shown, because the suite has hidden groups".to_owned(),
         Reason::DoesNotBuild => "the sources do not build".to_owned(),
-        Reason::Unusable(why) => of_unusable(why),
-        Reason::Failed(failure) => of_failure(failure),
+        Reason::Unusable(why) => describe_unusable(why),
+        Reason::Failed(failure) => describe_failure(failure),
     }
 }
 
 /// Returns how the program ended, and at which limit, without how far it came: the same in many scenes.
 pub(crate) fn ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summary(result) };
-    let ended = result.ended.as_ref().map(Ended::to_string).unwrap_or_default();
+    let ended = result.ended.as_ref().map(RunEnd::to_string).unwrap_or_default();
     let limit = match reached.limit {
         Some(Limit::Time(time)) => format!(" ({} s)", time.as_secs_f64()),
         Some(Limit::Memory(bytes)) => format!(" ({} MiB)", bytes >> 20),
@@ -60,7 +60,7 @@ pub(crate) fn ending(result: &SceneResult) -> String {
 #[must_use]
 pub fn details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
-    if result.ended == Some(Ended::Exited(NOT_FOUND)) {
+    if result.ended == Some(RunEnd::Exited(NOT_FOUND)) {
         lines.push(
             "exit code 127 usually means that something was not found: the program runs alone, without the files \
              next to it"
@@ -148,25 +148,25 @@ fn number(count: u64) -> String {
     count.to_string()
 }
 
-fn of_wrong(wrong: &Wrong, steps: u32) -> String {
+fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
     match wrong {
-        Wrong::Untold => "the trace is wrong".to_owned(),
-        Wrong::Nothing => "the trace holds no polynomial and no collision: no pair is tested".to_owned(),
-        Wrong::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
-        Wrong::Steps { wrong, first, kind } => {
+        WrongTrace::Untold => "the trace is wrong".to_owned(),
+        WrongTrace::Nothing => "the trace holds no polynomial and no collision: no pair is tested".to_owned(),
+        WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
+        WrongTrace::Steps { wrong, first, kind } => {
             format!("{}, first step {first}: {kind}", share::wrong(*wrong, steps, number))
         }
-        Wrong::Damaged => "the trace is damaged".to_owned(),
-        Wrong::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
-        Wrong::NoResult(error) => no_result(error),
-        Wrong::Borderline => {
+        WrongTrace::Damaged => "the trace is damaged".to_owned(),
+        WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
+        WrongTrace::NoResult(error) => no_result(error),
+        WrongTrace::Borderline => {
             "most of the trace's decisions are not the reference's, although round-off may flip them".to_owned()
         }
-        Wrong::Undecided => "nothing is wrong so far, but judging the trace would take too long".to_owned(),
+        WrongTrace::Undecided => "nothing is wrong so far, but judging the trace would take too long".to_owned(),
     }
 }
 
-fn of_bad_trace(bad: &BadTrace) -> String {
+fn describe_bad_trace(bad: &BadTrace) -> String {
     match bad {
         BadTrace::Unreadable { frame, step, cause, offset, damage } => {
             let what = match cause {
@@ -185,7 +185,7 @@ fn of_bad_trace(bad: &BadTrace) -> String {
 
 /// Returns how far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting
 /// to be written.
-fn how_far(reached: Reached, steps: u32) -> String {
+fn how_far(reached: ProgramProgress, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
         (Some(_), done) => format!(" at step {} of {steps}", done + 1),
@@ -194,7 +194,7 @@ fn how_far(reached: Reached, steps: u32) -> String {
     }
 }
 
-fn of_left_out(why: NotRunReason) -> String {
+fn describe_left_out(why: NotRunReason) -> String {
     match why {
         NotRunReason::Limits { scenes: 1, .. } => {
             "not run: the scene before it ran into a limit of time, memory or output".to_owned()
@@ -210,11 +210,11 @@ fn of_left_out(why: NotRunReason) -> String {
     }
 }
 
-fn of_unusable(why: &Unusable) -> String {
+fn describe_unusable(why: &UnusableReason) -> String {
     match why {
-        Unusable::CouldNotStart(problem) => format!("the program {}", Ended::CouldNotStart(problem.clone())),
-        Unusable::Unreadable(why) => format!("the program can't be used: {why}"),
-        Unusable::NoProgram { sought, found } => {
+        UnusableReason::CouldNotStart(problem) => format!("the program {}", RunEnd::CouldNotStart(problem.clone())),
+        UnusableReason::Unreadable(why) => format!("the program can't be used: {why}"),
+        UnusableReason::NoProgram { sought, found } => {
             let sought = format!("no program called {sought} in the upload");
             match found {
                 FolderContents::Unreadable(error) => format!("{sought}: it can't be read: {error}"),
@@ -230,7 +230,7 @@ fn of_unusable(why: &Unusable) -> String {
     }
 }
 
-fn of_failure(failure: &Failure) -> String {
+fn describe_failure(failure: &Failure) -> String {
     match failure {
         Failure::Machine(words) => words.clone(),
         Failure::Panic { stage: None, fault, .. } => format!("the grader failed: {fault}; please report this"),

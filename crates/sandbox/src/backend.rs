@@ -21,9 +21,9 @@ use super::{
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     laid::{folder_fault, plain_name, write_files},
     layers::{self, Layer, LayerReport},
-    outcome::Ended,
+    outcome::RunEnd,
     own, program, room,
-    running::{RunningProgram, Supervised},
+    running::{RunningProgram, SupervisedRun},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
     sys,
     wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
@@ -303,7 +303,7 @@ impl Backend {
                     Err(_) => return Err(asked.lost()),
                 };
                 let (SpawnedSupervisor { host, control, answers }, layers) = (asked, self.layers.clone());
-                let supervised = Supervised { host, answers, session, user, order, layers };
+                let supervised = SupervisedRun { host, answers, session, user, order, layers };
                 Ok(RunningProgram::new(supervised, control, folder))
             }
             Ok(Event::Failed(failure)) => {
@@ -311,7 +311,7 @@ impl Backend {
                 match failure.errno {
                     // The program itself is larger than its memory may be.
                     libc::ENOMEM if failure.stage == wire::EXECUTE => {
-                        FakeRun::ended(Ended::MemoryLimit).into_running(job, self.layers.clone())
+                        FakeRun::ended(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
                     }
                     _ => Err(set_up_failed(failure)),
                 }

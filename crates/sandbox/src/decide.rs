@@ -5,7 +5,7 @@
 //! memory. Nobody gains by forging that; it is one failure instead of another.
 
 use super::{
-    outcome::{Ended, StartProblem},
+    outcome::{RunEnd, StartProblem},
     wire::{Report, RunOrder},
 };
 
@@ -13,57 +13,57 @@ use super::{
 const LOADER_FAILED: i32 = 127;
 
 /// Returns how the run of `order` ended, given the facts and what the program wrote to standard error.
-pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ended {
+pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
     if report.exec_errno == Some(libc::ENOMEM) {
-        return Ended::MemoryLimit;
+        return RunEnd::MemoryLimit;
     }
     if let Some(errno) = report.exec_errno {
-        return Ended::CouldNotStart(start_problem(errno));
+        return RunEnd::CouldNotStart(start_problem(errno));
     }
     match &report.cause {
-        Some(Ended::Cancelled) => return Ended::Cancelled,
-        _ if report.trace_over => return Ended::TraceLimit,
+        Some(RunEnd::Cancelled) => return RunEnd::Cancelled,
+        _ if report.trace_over => return RunEnd::TraceLimit,
         Some(cause) => return cause.clone(),
         None => {}
     }
     let signal = libc::WIFSIGNALED(report.status).then(|| libc::WTERMSIG(report.status));
     match signal {
-        Some(libc::SIGXCPU) => return Ended::CpuLimit,
-        Some(libc::SIGXFSZ) => return Ended::FolderLimit,
-        Some(libc::SIGSYS) => return Ended::Violation { call: "a call of another architecture (32 bits)".into() },
+        Some(libc::SIGXCPU) => return RunEnd::CpuLimit,
+        Some(libc::SIGXFSZ) => return RunEnd::FolderLimit,
+        Some(libc::SIGSYS) => return RunEnd::Violation { call: "a call of another architecture (32 bits)".into() },
         _ => {}
     }
     // A short run can pass a limit and end between two looks.
     if report.peak_memory > order.limits.memory {
-        return Ended::MemoryLimit;
+        return RunEnd::MemoryLimit;
     }
     if report.cpu > order.limits.cpu {
-        return Ended::CpuLimit;
+        return RunEnd::CpuLimit;
     }
     if report.folder_over {
-        return Ended::FolderLimit;
+        return RunEnd::FolderLimit;
     }
     let text = String::from_utf8_lossy(stderr);
     if report.status != 0 && !order.sanitizers && wants_shadow(&text) {
-        return Ended::CouldNotStart(StartProblem::Sanitized);
+        return RunEnd::CouldNotStart(StartProblem::Sanitized);
     }
     if let Some(signal) = signal {
         let refused = signal == libc::SIGABRT && wants_memory(&text);
-        return if refused { Ended::MemoryLimit } else { Ended::Signalled(signal) };
+        return if refused { RunEnd::MemoryLimit } else { RunEnd::Signalled(signal) };
     }
     let code = libc::WEXITSTATUS(report.status);
     if code != 0 && wants_memory(&text) {
-        return Ended::MemoryLimit;
+        return RunEnd::MemoryLimit;
     }
     if code == LOADER_FAILED
         && let Some(library) = missing_library(&text)
     {
-        return Ended::CouldNotStart(StartProblem::MissingLibrary { library });
+        return RunEnd::CouldNotStart(StartProblem::MissingLibrary { library });
     }
     if code != 0 && wants_display(&text) {
-        return Ended::CouldNotStart(StartProblem::NeedsDisplay);
+        return RunEnd::CouldNotStart(StartProblem::NeedsDisplay);
     }
-    Ended::Exited(code)
+    RunEnd::Exited(code)
 }
 
 /// Returns the meaning of the kernel's refusal to execute a file that is there and may be executed.
@@ -139,27 +139,27 @@ mod tests {
 
     #[test]
     fn the_reason_to_kill_outranks_the_kill() {
-        let report = Report { status: libc::SIGKILL, cause: Some(Ended::WallLimit), ..Report::default() };
-        assert_eq!(ended(&order(), &report, b""), Ended::WallLimit);
-        assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), Ended::Signalled(libc::SIGKILL));
+        let report = Report { status: libc::SIGKILL, cause: Some(RunEnd::WallLimit), ..Report::default() };
+        assert_eq!(ended(&order(), &report, b""), RunEnd::WallLimit);
+        assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), RunEnd::Signalled(libc::SIGKILL));
     }
 
     #[test]
     fn a_trace_beyond_its_limit_outranks_all_but_a_cancellation() {
-        for cause in [None, Some(Ended::FolderLimit), Some(Ended::WallLimit)] {
+        for cause in [None, Some(RunEnd::FolderLimit), Some(RunEnd::WallLimit)] {
             let report = Report { cause, trace_over: true, status: libc::SIGXFSZ, ..Report::default() };
-            assert_eq!(ended(&order(), &report, b""), Ended::TraceLimit);
+            assert_eq!(ended(&order(), &report, b""), RunEnd::TraceLimit);
         }
-        let report = Report { cause: Some(Ended::Cancelled), trace_over: true, ..Report::default() };
-        assert_eq!(ended(&order(), &report, b""), Ended::Cancelled);
+        let report = Report { cause: Some(RunEnd::Cancelled), trace_over: true, ..Report::default() };
+        assert_eq!(ended(&order(), &report, b""), RunEnd::Cancelled);
     }
 
     #[test]
     fn signals_of_limits_are_limits() {
         for (signal, expected) in [
-            (libc::SIGXCPU, Ended::CpuLimit),
-            (libc::SIGXFSZ, Ended::FolderLimit),
-            (libc::SIGSEGV, Ended::Signalled(libc::SIGSEGV)),
+            (libc::SIGXCPU, RunEnd::CpuLimit),
+            (libc::SIGXFSZ, RunEnd::FolderLimit),
+            (libc::SIGSEGV, RunEnd::Signalled(libc::SIGSEGV)),
         ] {
             assert_eq!(ended(&order(), &Report { status: signal, ..Report::default() }, b""), expected);
         }
@@ -167,44 +167,47 @@ mod tests {
 
     #[test]
     fn a_limit_passed_between_two_looks_is_still_passed() {
-        assert_eq!(ended(&order(), &Report { peak_memory: 1001, ..exit(0) }, b""), Ended::MemoryLimit);
-        assert_eq!(ended(&order(), &Report { cpu: Duration::from_micros(1_000_001), ..exit(0) }, b""), Ended::CpuLimit);
-        assert_eq!(ended(&order(), &Report { folder_over: true, ..exit(0) }, b""), Ended::FolderLimit);
-        assert_eq!(ended(&order(), &exit(0), b""), Ended::Exited(0));
+        assert_eq!(ended(&order(), &Report { peak_memory: 1001, ..exit(0) }, b""), RunEnd::MemoryLimit);
+        assert_eq!(
+            ended(&order(), &Report { cpu: Duration::from_micros(1_000_001), ..exit(0) }, b""),
+            RunEnd::CpuLimit
+        );
+        assert_eq!(ended(&order(), &Report { folder_over: true, ..exit(0) }, b""), RunEnd::FolderLimit);
+        assert_eq!(ended(&order(), &exit(0), b""), RunEnd::Exited(0));
     }
 
     #[test]
     fn loaders_and_displays_explain_a_failure_and_never_a_success() {
         let loader = b"./FOSSSim: error while loading shared libraries: libglut.so.3: cannot open shared object file";
-        let missing = Ended::CouldNotStart(StartProblem::MissingLibrary { library: "libglut.so.3".into() });
+        let missing = RunEnd::CouldNotStart(StartProblem::MissingLibrary { library: "libglut.so.3".into() });
         assert_eq!(ended(&order(), &exit(127), loader), missing);
-        assert_eq!(ended(&order(), &exit(1), loader), Ended::Exited(1));
+        assert_eq!(ended(&order(), &exit(1), loader), RunEnd::Exited(1));
         let forged = b"error while loading shared libraries: what the hidden scene holds: x";
-        assert_eq!(ended(&order(), &exit(127), forged), Ended::Exited(127), "a sentence is no name");
+        assert_eq!(ended(&order(), &exit(127), forged), RunEnd::Exited(127), "a sentence is no name");
         let display = b"freeglut (./FOSSSim): failed to open display ''";
-        assert_eq!(ended(&order(), &exit(1), display), Ended::CouldNotStart(StartProblem::NeedsDisplay));
-        assert_eq!(ended(&order(), &exit(0), display), Ended::Exited(0));
+        assert_eq!(ended(&order(), &exit(1), display), RunEnd::CouldNotStart(StartProblem::NeedsDisplay));
+        assert_eq!(ended(&order(), &exit(0), display), RunEnd::Exited(0));
     }
 
     #[test]
     fn who_gives_up_for_want_of_memory_has_met_the_memory_limit() {
         let aborted = Report { status: libc::SIGABRT, ..Report::default() };
         let words = b"terminate called after throwing an instance of 'std::bad_alloc'\n  what():  std::bad_alloc\n";
-        assert_eq!(ended(&order(), &aborted, words), Ended::MemoryLimit);
-        assert_eq!(ended(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"), Ended::Signalled(libc::SIGABRT));
-        assert_eq!(ended(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"), Ended::MemoryLimit);
-        assert_eq!(ended(&order(), &exit(0), b"MemoryError\n"), Ended::Exited(0));
+        assert_eq!(ended(&order(), &aborted, words), RunEnd::MemoryLimit);
+        assert_eq!(ended(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"), RunEnd::Signalled(libc::SIGABRT));
+        assert_eq!(ended(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"), RunEnd::MemoryLimit);
+        assert_eq!(ended(&order(), &exit(0), b"MemoryError\n"), RunEnd::Exited(0));
         let long_ago = [&words[..], b"caught it\n1\n2\n3\n"].concat();
-        assert_eq!(ended(&order(), &aborted, &long_ago), Ended::Signalled(libc::SIGABRT));
+        assert_eq!(ended(&order(), &aborted, &long_ago), RunEnd::Signalled(libc::SIGABRT));
         let crashed = Report { status: libc::SIGSEGV, ..Report::default() };
-        assert_eq!(ended(&order(), &crashed, words), Ended::Signalled(libc::SIGSEGV));
+        assert_eq!(ended(&order(), &crashed, words), RunEnd::Signalled(libc::SIGSEGV));
     }
 
     #[test]
     fn a_refusal_of_the_kernel_is_translated() {
         let refused = |errno| ended(&order(), &Report { exec_errno: Some(errno), ..Report::default() }, b"");
-        assert_eq!(refused(libc::ETXTBSY), Ended::CouldNotStart(StartProblem::Busy));
-        assert_eq!(refused(libc::ENOEXEC), Ended::CouldNotStart(StartProblem::NotAProgram));
-        assert_eq!(refused(libc::ENOENT), Ended::CouldNotStart(StartProblem::MissingLoader {}));
+        assert_eq!(refused(libc::ETXTBSY), RunEnd::CouldNotStart(StartProblem::Busy));
+        assert_eq!(refused(libc::ENOEXEC), RunEnd::CouldNotStart(StartProblem::NotAProgram));
+        assert_eq!(refused(libc::ENOENT), RunEnd::CouldNotStart(StartProblem::MissingLoader {}));
     }
 }

@@ -7,7 +7,7 @@ use super::{
     job::Job,
     laid,
     layers::LayerReport,
-    outcome::{CapturedOutput, Ended, RunOutcome, StartProblem},
+    outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem},
     running::RunningProgram,
 };
 
@@ -15,7 +15,7 @@ use super::{
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FakeRun {
     /// How it ended.
-    pub ended: Ended,
+    pub ended: RunEnd,
     /// The trace that it leaves, if the job has one; nothing leaves none.
     pub trace: Vec<u8>,
     /// Standard output.
@@ -31,28 +31,28 @@ pub struct FakeRun {
 impl FakeRun {
     /// Returns a run that ended like this and wrote nothing.
     #[must_use]
-    pub fn ended(ended: Ended) -> Self {
+    pub fn ended(ended: RunEnd) -> Self {
         Self { ended, trace: Vec::new(), stdout: Vec::new(), stderr: Vec::new(), cpu: Duration::ZERO, peak_memory: 0 }
     }
 
     /// Returns a run that exited with code 0 and wrote this trace.
     #[must_use]
     pub fn wrote(trace: impl Into<Vec<u8>>) -> Self {
-        Self { trace: trace.into(), ..Self::ended(Ended::Exited(0)) }
+        Self { trace: trace.into(), ..Self::ended(RunEnd::Exited(0)) }
     }
 
     /// Returns a program that never ran.
     pub(super) fn could_not_start(problem: StartProblem) -> Self {
-        Self::ended(Ended::CouldNotStart(problem))
+        Self::ended(RunEnd::CouldNotStart(problem))
     }
 
     pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<RunningProgram, SandboxError> {
         if let Some(name) = job.trace.as_ref().filter(|_| !self.trace.is_empty()) {
             laid::write_file(job, name, &self.trace)?;
         }
-        let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != Ended::Cancelled;
+        let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != RunEnd::Cancelled;
         let outcome = RunOutcome {
-            ended: if is_over { Ended::TraceLimit } else { self.ended },
+            ended: if is_over { RunEnd::TraceLimit } else { self.ended },
             cpu: self.cpu,
             wall: self.cpu,
             peak_memory: self.peak_memory,
@@ -75,24 +75,24 @@ mod tests {
     fn a_fake_answers_as_scripted_for_each_job() {
         let backend = Backend::fake(|job| match job.trace {
             Some(_) => FakeRun::wrote(*b"frames"),
-            None => FakeRun::ended(Ended::WallLimit),
+            None => FakeRun::ended(RunEnd::WallLimit),
         });
         let folder = tempfile::tempdir().unwrap();
         let job = Job::new("program", folder.path());
-        assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, Ended::WallLimit);
+        assert_eq!(backend.start(&job).unwrap().wait().unwrap().ended, RunEnd::WallLimit);
         let (outcome, left) = backend.start(&job.trace("trace.bin")).unwrap().wait_with_folder().unwrap();
         let mut bytes = Vec::new();
         left.regular_file("trace.bin", 6).unwrap().0.read_to_end(&mut bytes).unwrap();
-        assert_eq!((outcome.ended, bytes.as_slice()), (Ended::Exited(0), &b"frames"[..]));
+        assert_eq!((outcome.ended, bytes.as_slice()), (RunEnd::Exited(0), &b"frames"[..]));
     }
 
     #[test]
     fn a_trace_beyond_its_limit_is_one_whoever_ended_first() {
         let folder = tempfile::tempdir().unwrap();
         for (ended, beyond) in [
-            (Ended::Exited(1), Ended::TraceLimit),
-            (Ended::WallLimit, Ended::TraceLimit),
-            (Ended::Cancelled, Ended::Cancelled),
+            (RunEnd::Exited(1), RunEnd::TraceLimit),
+            (RunEnd::WallLimit, RunEnd::TraceLimit),
+            (RunEnd::Cancelled, RunEnd::Cancelled),
         ] {
             let ending = ended.clone();
             let backend = Backend::fake(move |_| FakeRun { ended: ending.clone(), ..FakeRun::wrote(*b"frames") });

@@ -198,7 +198,7 @@ fn has_simply_ended(report: &Report) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{job::Limits, outcome::Ended, wire::Walls};
+    use crate::{job::Limits, outcome::RunEnd, wire::Walls};
 
     fn order() -> RunOrder {
         let walls = Walls { namespaces: true, seccomp: true, ..Walls::default() };
@@ -249,7 +249,7 @@ mod tests {
         let exited = Report { status: 7 << 8, ..Report::default() };
         assert!(has_simply_ended(&exited));
         for report in [
-            Report { cause: Some(Ended::WallLimit), ..exited.clone() },
+            Report { cause: Some(RunEnd::WallLimit), ..exited.clone() },
             Report { status: libc::SIGKILL, ..exited.clone() },
             Report { survivors: 1, ..exited.clone() },
             Report { folder_over: true, ..exited.clone() },

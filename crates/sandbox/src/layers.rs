@@ -88,9 +88,9 @@ pub struct LayerReport {
 
 /// Returns the reports of a probe.
 pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
-    let mut reports = Vec::from(of_processes(probe));
-    reports.extend(of_calls_and_files(probe));
-    reports.extend(of_surroundings(probe));
+    let mut reports = Vec::from(process_layers(probe));
+    reports.extend(call_and_file_layers(probe));
+    reports.extend(surrounding_layers(probe));
     reports
 }
 
@@ -111,7 +111,7 @@ fn has_own_user(probe: &Probe) -> bool {
 }
 
 /// Returns the walls that a process puts up around itself, and what it needs to begin.
-fn of_processes(probe: &Probe) -> [LayerReport; 4] {
+fn process_layers(probe: &Probe) -> [LayerReport; 4] {
     [
         report(
             Layer::NoNewPrivileges,
@@ -149,7 +149,7 @@ fn of_processes(probe: &Probe) -> [LayerReport; 4] {
 }
 
 /// Returns the walls before system calls, files and signals.
-fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
+fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
     let (user, hidden) = (has_own_user(probe), probe.namespaces.is_none());
     let scopes = match (&probe.landlock, probe.landlock_abi) {
         (None, 6..) => None,
@@ -200,7 +200,7 @@ fn of_calls_and_files(probe: &Probe) -> [LayerReport; 4] {
 }
 
 /// Returns the walls that only some hosts have: users, namespaces, groups.
-fn of_surroundings(probe: &Probe) -> [LayerReport; 3] {
+fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
     let own_user = match (probe.root, probe.roots_group) {
         (true, _) => probe.own_user.clone(),
         (false, true) => Some("the grader is not root, but in root's group, and so are the programs".into()),

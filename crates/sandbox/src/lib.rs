@@ -55,7 +55,7 @@ pub use fake::FakeRun;
 pub use fault::SandboxError;
 pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
-pub use outcome::{CapturedOutput, Ended, RunOutcome, StartProblem};
+pub use outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem};
 pub use own::is_own;
 pub use running::{Canceller, LeftFolder, RunningProgram};
 pub use supervisor::supervisor_main;

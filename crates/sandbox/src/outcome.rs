@@ -2,7 +2,7 @@
 
 use std::{sync::Arc, time::Duration};
 
-pub use fosssim_ended::{Ended, StartProblem};
+pub use fosssim_ended::{RunEnd, StartProblem};
 
 use super::layers::LayerReport;
 
@@ -19,7 +19,7 @@ pub struct CapturedOutput {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunOutcome {
     /// How it ended.
-    pub ended: Ended,
+    pub ended: RunEnd,
     /// Processor time, user and system, of the whole tree.
     pub cpu: Duration,
     /// Time on the clock.
@@ -41,12 +41,12 @@ mod tests {
     #[test]
     fn an_ending_reads_as_a_sentence_about_the_program() {
         assert_eq!(
-            Ended::Signalled(libc::SIGSEGV).to_string(),
+            RunEnd::Signalled(libc::SIGSEGV).to_string(),
             "ended by signal 11 (SIGSEGV: it used memory that is not its own)"
         );
-        assert_eq!(Ended::TraceLimit.to_string(), "wrote more than allowed to the trace");
+        assert_eq!(RunEnd::TraceLimit.to_string(), "wrote more than allowed to the trace");
         assert_eq!(
-            Ended::CouldNotStart(StartProblem::NotExecutable).to_string(),
+            RunEnd::CouldNotStart(StartProblem::NotExecutable).to_string(),
             "could not start: the file is not executable; if it is the program, run chmod +x on it"
         );
     }

@@ -33,7 +33,7 @@ pub struct RunningProgram {
 #[derive(Debug)]
 enum State {
     /// Under a supervisor.
-    Supervised(Box<Supervised>),
+    Supervised(Box<SupervisedRun>),
     /// Known already.
     Known(Box<RunOutcome>),
     /// Handed out.
@@ -41,7 +41,7 @@ enum State {
 }
 
 #[derive(Debug)]
-pub(super) struct Supervised {
+pub(super) struct SupervisedRun {
     pub(super) host: Host,
     /// The supervisor's answers.
     pub(super) answers: File,
@@ -53,7 +53,7 @@ pub(super) struct Supervised {
 
 impl RunningProgram {
     /// Creates a run whose supervisor has said that it is ready.
-    pub(super) fn new(supervised: Supervised, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
+    pub(super) fn new(supervised: SupervisedRun, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
         let folder = LeftFolder { in_memory, path: wire::path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
         Self { state: State::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
@@ -102,7 +102,7 @@ impl RunningProgram {
         Ok((outcome, LeftFolder { in_memory, path, _keeper: keeper }))
     }
 
-    fn conclude(&self, mut supervised: Supervised) -> Result<(RunOutcome, Option<RestingKeeper>), SandboxError> {
+    fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<RestingKeeper>), SandboxError> {
         let answer = receive(&mut supervised.answers);
         // Nobody commands a supervisor that has reported.
         drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());

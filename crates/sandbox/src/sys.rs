@@ -399,7 +399,7 @@ pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Res
 }
 
 /// A system call that waits for a decision.
-pub(super) struct Announced {
+pub(super) struct PendingCall {
     /// The announcement's number.
     pub(super) id: u64,
     /// The calling thread.
@@ -411,7 +411,7 @@ pub(super) struct Announced {
 }
 
 /// Takes the next announcement; `None` when the caller has died meanwhile.
-pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<Announced>> {
+pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<PendingCall>> {
     // SAFETY: an all-zero notification is valid, and the kernel asks for zeros.
     let mut notification: libc::seccomp_notif = unsafe { std::mem::zeroed() };
     // SAFETY: the structure is the one that this request fills, and it outlives the call.
@@ -419,7 +419,7 @@ pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<A
     match check(i64::from(answer)) {
         Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::EINTR)) => Ok(None),
         Err(error) => Err(error),
-        Ok(_) => Ok(Some(Announced {
+        Ok(_) => Ok(Some(PendingCall {
             id: notification.id,
             thread: notification.pid,
             call: i64::from(notification.data.nr),

@@ -12,7 +12,7 @@ use std::{
     time::Duration,
 };
 
-use fosssim_ended::Ended;
+use fosssim_ended::RunEnd;
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::job::Limits;
@@ -33,15 +33,15 @@ pub(super) const RUN: u8 = b'r';
 pub(super) const FOLDER: u8 = b'f';
 
 /// Bytes of a path or an argument.
-pub(super) type Raw = Vec<u8>;
+pub(super) type RawBytes = Vec<u8>;
 
 /// Turns a path into bytes.
-pub(super) fn raw(path: &Path) -> Raw {
+pub(super) fn raw(path: &Path) -> RawBytes {
     path.as_os_str().as_bytes().to_vec()
 }
 
 /// Turns bytes back into a path.
-pub(super) fn path(raw: &Raw) -> PathBuf {
+pub(super) fn path(raw: &RawBytes) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
@@ -68,29 +68,29 @@ pub(super) struct Walls {
 /// The order for one run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct RunOrder {
-    pub(super) program: Raw,
-    pub(super) folder: Raw,
-    pub(super) arguments: Vec<Raw>,
-    pub(super) environment: Vec<(Raw, Raw)>,
-    pub(super) readable: Vec<Raw>,
+    pub(super) program: RawBytes,
+    pub(super) folder: RawBytes,
+    pub(super) arguments: Vec<RawBytes>,
+    pub(super) environment: Vec<(RawBytes, RawBytes)>,
+    pub(super) readable: Vec<RawBytes>,
     /// Interpreters that the kernel executes on the way to the program.
-    pub(super) executable: Vec<Raw>,
+    pub(super) executable: Vec<RawBytes>,
     /// The files' names as the program and the kernel use them, which may be links.
-    pub(super) named: Vec<Raw>,
+    pub(super) named: Vec<RawBytes>,
     /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
-    pub(super) own: Vec<Raw>,
+    pub(super) own: Vec<RawBytes>,
     /// The name of the trace in the working folder.
-    pub(super) trace: Option<Raw>,
+    pub(super) trace: Option<RawBytes>,
     /// Files that are laid into the working folder, by name, with their length: their bytes follow the order. Only
     /// where that folder lies in memory.
-    pub(super) files: Vec<(Raw, u64)>,
+    pub(super) files: Vec<(RawBytes, u64)>,
     /// Whether the working folder lies in memory. The supervisor then hands it to the grader.
     pub(super) volatile: bool,
     pub(super) tools: bool,
     /// The interpreter of a script, which is executed in its place.
-    pub(super) interpreter: Option<Raw>,
+    pub(super) interpreter: Option<RawBytes>,
     /// The interpreter's name for itself and its arguments before the script.
-    pub(super) words: Vec<Raw>,
+    pub(super) words: Vec<RawBytes>,
     /// Whether the program may carry a sanitizer, which reserves terabytes of address space.
     pub(super) sanitizers: bool,
     pub(super) walls: Walls,
@@ -149,7 +149,7 @@ pub(super) fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
     /// The first reason to kill, if any.
-    pub(super) cause: Option<Ended>,
+    pub(super) cause: Option<RunEnd>,
     /// The main process's raw wait status.
     pub(super) status: i32,
     /// The error number of `execve`, if the program never ran.

@@ -20,7 +20,7 @@ pub(crate) struct LatePolicy {
 
 /// How late a submission came.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
-pub struct Late {
+pub struct Lateness {
     /// Days after the due date; a day that has begun counts.
     pub days: i64,
     /// How many percent of the grader's points it loses.
@@ -45,7 +45,7 @@ impl LatePolicy {
 
     /// Returns how late a submission is that came at this moment, of somebody who has more time than the others, or
     /// not. Nothing where it came in time, or where the assignment says nothing of late ones.
-    pub(crate) fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Late> {
+    pub(crate) fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
         // taken late any more, the work that was taken keeps its price.
@@ -56,14 +56,14 @@ impl LatePolicy {
         }
         let days = days.min(most);
         let percent = days.saturating_mul(self.late_percent.into()).min(100);
-        (days > 0 && (self.late_days > 0 || percent > 0)).then_some(Late { days, percent })
+        (days > 0 && (self.late_days > 0 || percent > 0)).then_some(Lateness { days, percent })
     }
 }
 
-impl Late {
+impl Lateness {
     /// Returns how late a submission came, by its row with `created_at`, the assignment's `settings` and its owner's
     /// own due date, `own_due`.
-    pub(crate) fn of(row: &Row) -> Result<Option<Self>, DbError> {
+    pub(crate) fn from_row(row: &Row) -> Result<Option<Self>, DbError> {
         let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
         Ok(policy.late(row.maybe_int("own_due")?, row.int("created_at")?))
     }
@@ -94,7 +94,7 @@ mod tests {
         assert_eq!(closed.late(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
         let never = LatePolicy { late_percent: 0, ..closed };
         assert_eq!(never.late(None, due + 1), None, "where nothing is said of late work, nothing is late");
-        assert_eq!(Late { days: 1, percent: 10 }.left_of("85.5"), "76.95");
+        assert_eq!(Lateness { days: 1, percent: 10 }.left_of("85.5"), "76.95");
     }
 
     #[test]

@@ -3,7 +3,7 @@ use crate::{
     db::{Database, DbError, Transaction, read_row},
     health,
     lti::score,
-    queue::{self, Buried, Completion, Failure, Lease, QueuePolicy},
+    queue::{self, BuriedJob, Completion, Failure, Lease, QueuePolicy},
     task::{JUDGE_ERROR, Outcome, rounded},
     values,
 };
@@ -126,7 +126,7 @@ async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> 
     Ok(())
 }
 
-async fn bury_all(transaction: &mut Transaction, jobs: &[Buried]) -> Result<(), DbError> {
+async fn bury_all(transaction: &mut Transaction, jobs: &[BuriedJob]) -> Result<(), DbError> {
     for job in jobs {
         bury(transaction, job.job, job.attempt, &job.fault).await?;
     }

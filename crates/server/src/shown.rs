@@ -16,7 +16,7 @@ const CODES: [&str; 14] = ["AC", "--", "NW", "WA", "BT", "NO", "OLE", "MLE", "TL
 
 /// A grade without the groups that are withheld.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Shown {
+pub struct ShownGrade {
     verdict: String,
     code: String,
     points: Option<String>,
@@ -37,13 +37,13 @@ pub struct KeptTexts {
 ///
 /// # Errors
 /// When the store fails.
-pub async fn of_outcome(store: &Store, files: &[OutputFile]) -> Result<KeptTexts, StoreError> {
+pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts, StoreError> {
     let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(KeptTexts::default()) };
     let opened = store.open(&file.artifact.digest).await?;
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
-    let shown = report.as_ref().map_or_else(|| Some(nothing()), of_file);
+    let shown = report.as_ref().map_or_else(|| Some(nothing()), shown_grade);
     Ok(KeptTexts { shown: shown.as_ref().map(text).unwrap_or_default(), failed: report.as_ref().map(failed) })
 }
 
@@ -59,13 +59,13 @@ fn failed(report: &GradeFile) -> String {
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
 }
 
-fn text(shown: &Shown) -> String {
+fn text(shown: &ShownGrade) -> String {
     serde_json::to_string(shown).unwrap_or_default()
 }
 
 /// Returns a grade of which nothing is shown.
-fn nothing() -> Shown {
-    Shown {
+fn nothing() -> ShownGrade {
+    ShownGrade {
         verdict: "graded".to_owned(),
         code: "NR".to_owned(),
         points: None,
@@ -75,7 +75,7 @@ fn nothing() -> Shown {
 }
 
 /// Returns the rest of a `grade.json` without hidden groups; nothing where it hides none.
-fn of_file(report: &GradeFile) -> Option<Shown> {
+fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
     let is_visible =
         |group: &&&GroupInFile| group.visibility.as_deref().is_none_or(|visibility| visibility == "visible");
@@ -92,7 +92,7 @@ fn of_file(report: &GradeFile) -> Option<Shown> {
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
     };
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
-    Some(Shown {
+    Some(ShownGrade {
         verdict: worst.verdict.clone(),
         // A code has letters: of what was not run nothing is known.
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
@@ -102,7 +102,7 @@ fn of_file(report: &GradeFile) -> Option<Shown> {
     })
 }
 
-impl Shown {
+impl ShownGrade {
     /// Reads the grade in a text of the database; nothing where nothing is withheld.
     pub fn read(text: &str) -> Option<Self> {
         match text {
@@ -139,8 +139,8 @@ pub fn hour(milliseconds: i64) -> i64 {
 mod tests {
     use super::*;
 
-    fn shown(groups: &str) -> Option<Shown> {
-        of_file(&file(groups))
+    fn shown(groups: &str) -> Option<ShownGrade> {
+        shown_grade(&file(groups))
     }
 
     fn file(groups: &str) -> GradeFile {
@@ -164,7 +164,7 @@ mod tests {
         assert_eq!((one.code.as_str(), one.verdict.as_str()), ("WA", "wrong answer"));
         assert_eq!((one.points.as_deref(), one.max_points.as_deref()), (Some("7.5"), Some("10.0")));
         assert!(one.summary.starts_with("1 of 2 scenes accepted"), "{}", one.summary);
-        assert_eq!(Shown::read(&text(&one)), Some(one));
+        assert_eq!(ShownGrade::read(&text(&one)), Some(one));
         assert_eq!(shown(&hidden("AC", 90)), Some(nothing()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));

@@ -6,7 +6,7 @@
 mod read;
 mod sweep;
 
-pub use read::Opened;
+pub use read::OpenArtefact;
 
 use crate::secret::hex;
 use futures_util::TryStreamExt;
@@ -80,7 +80,7 @@ impl From<io::Error> for StoreError {
 
 impl Digest {
     /// Returns the digest of bytes.
-    pub fn of(bytes: &[u8]) -> Self {
+    pub fn from_bytes(bytes: &[u8]) -> Self {
         Self(hex(&Sha256::digest(bytes)))
     }
 
@@ -190,7 +190,7 @@ impl Store {
     /// When the file can't be read, or changes meanwhile, or the store fails.
     pub async fn put_file(&self, file: &Path) -> Result<Artifact, StoreError> {
         let artifact = digest_of_file(file).await?;
-        if self.has_fresh(&artifact.digest).await? {
+        if self.find_fresh(&artifact.digest).await? {
             return Ok(artifact);
         }
         let (mut pieces, mut hasher) = (pieces(file).await?, Sha256::new());
@@ -218,7 +218,7 @@ impl Store {
     }
 
     /// Returns whether there is one that nobody will give up soon.
-    async fn has_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
+    async fn find_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT)).await?.is_some_and(|age| age < FRESH))
     }
 

@@ -59,7 +59,7 @@ impl Form {
     }
 
     /// Returns the thing to hand in, in words.
-    pub fn words(self) -> &'static str {
+    pub fn describe(self) -> &'static str {
         match self {
             Self::Program => "a program for Linux",
             Self::Sources => "an archive of sources",
@@ -126,8 +126,8 @@ pub struct Outcome {
     pub seconds: String,
     /// Reports and logs; empty in lists.
     pub files: Vec<OutputFile>,
-    /// The part that students see while groups are withheld, as [`Shown`](crate::shown::Shown) keeps it; nothing while
-    /// nobody has looked.
+    /// The part that students see while groups are withheld, as [`ShownGrade`](crate::shown::ShownGrade) keeps it;
+    /// nothing while nobody has looked.
     #[serde(skip)]
     pub shown: Option<String>,
     /// The scenes that are not accepted, a line each with the verdict in short; nothing while nobody has looked.

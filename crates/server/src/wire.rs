@@ -9,7 +9,7 @@ use utoipa::ToSchema;
 
 /// A job for a worker.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-pub struct Claimed {
+pub struct ClaimedJob {
     /// The lease to show from now on.
     pub lease: Lease,
     /// How often to renew it, in milliseconds.
@@ -20,7 +20,7 @@ pub struct Claimed {
 
 /// A sign of life.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct Alive {
+pub(crate) struct SignOfLife {
     /// How many gradings it does at one time; 0 while it can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
@@ -76,7 +76,7 @@ pub(crate) struct JobFault {
 
 /// A result.
 #[derive(Serialize, Deserialize, ToSchema)]
-pub(crate) struct Finished {
+pub(crate) struct FinishedJob {
     pub(crate) lease: Lease,
     pub(crate) outcome: Outcome,
 }

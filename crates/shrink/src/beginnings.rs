@@ -30,7 +30,7 @@ pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<Scene> {
 /// Returns the state before each step up to this one, as far as the trace has them.
 fn states(scene: &Scene, trace: &[u8], last: u32) -> Vec<State> {
     let layout = Layout::for_scene(scene);
-    let (mut reader, mut frame) = (Lenient::of_slice(trace, layout), LenientFrame::default());
+    let (mut reader, mut frame) = (Lenient::from_slice(trace, layout), LenientFrame::default());
     let mut states = vec![State::for_scene(scene)];
     while states.len() < last as usize && reader.next(&mut frame).is_ok() {
         let record = reader.records() - 1;

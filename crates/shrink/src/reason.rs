@@ -1,6 +1,6 @@
 //! Why a program is wrong on a scene, and whether it is wrong for the same reason on another.
-use fosssim_ended::Ended;
-use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::Failing};
+use fosssim_ended::RunEnd;
+use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::FailureKind};
 use fosssim_judge::replay::{Options, judge};
 use fosssim_mistakes::{
     diagnose::{self, is_named_in, shows},
@@ -17,14 +17,14 @@ pub struct Observation {
     /// The trace, as far as it was written.
     pub trace: Vec<u8>,
     /// How the program ended.
-    pub ended: Ended,
+    pub ended: RunEnd,
 }
 
 impl Observation {
     /// Returns the observation of a program that ended well.
     #[must_use]
     pub const fn from_trace(trace: Vec<u8>) -> Self {
-        Self { trace, ended: Ended::Exited(0) }
+        Self { trace, ended: RunEnd::Exited(0) }
     }
 }
 
@@ -32,7 +32,7 @@ impl Observation {
 #[derive(Debug, Clone, PartialEq)]
 pub enum WrongReason {
     /// The program does not end well: by this signal, with this exit code, or at this limit.
-    Ended(Ended),
+    Ended(RunEnd),
     /// The trace can't be read to its end.
     BrokenTrace,
     /// From some step on there are values that are no numbers.
@@ -48,7 +48,7 @@ impl WrongReason {
     /// decides that.
     #[must_use]
     pub fn first(scene: &Scene, seen: &Observation) -> Option<Self> {
-        if Failing::from_end(&seen.ended).is_some() {
+        if FailureKind::from_end(&seen.ended).is_some() {
             return Some(Self::Ended(seen.ended.clone()));
         }
         let finding = match findings(scene, &seen.trace)? {
@@ -67,9 +67,9 @@ impl WrongReason {
     /// decision that round-off may flip.
     #[must_use]
     pub fn holds(&self, scene: &Scene, seen: &Observation) -> bool {
-        match (self, Failing::from_end(&seen.ended)) {
-            (Self::Ended(Ended::Signalled(signal)), _) => seen.ended == Ended::Signalled(*signal),
-            (Self::Ended(ended), failing) => failing.is_some() && Failing::from_end(ended) == failing,
+        match (self, FailureKind::from_end(&seen.ended)) {
+            (Self::Ended(RunEnd::Signalled(signal)), _) => seen.ended == RunEnd::Signalled(*signal),
+            (Self::Ended(ended), failing) => failing.is_some() && FailureKind::from_end(ended) == failing,
             (_, Some(_)) => false,
             (reason, None) => match (reason, findings(scene, &seen.trace)) {
                 (Self::BrokenTrace, fault) => fault == Some(TraceFault::Broken),

@@ -75,7 +75,7 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
 
 #[test]
 fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
-    use fosssim_ended::Ended::{CpuLimit, MemoryLimit, Signalled, WallLimit};
+    use fosssim_ended::RunEnd::{CpuLimit, MemoryLimit, Signalled, WallLimit};
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let seen = |ended| Observation { trace: Vec::new(), ended };
     let reason = |ended| WrongReason::first(scene, &seen(ended)).expect("wrong");

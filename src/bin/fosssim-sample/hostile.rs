@@ -72,7 +72,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
 }
 
 /// A hostile act in the middle of a run.
-pub enum Midway {
+pub enum MidwayAct {
     /// The simulation goes on.
     GoOn,
     /// The program stops writing and leaves with this status.
@@ -82,10 +82,10 @@ pub enum Midway {
 }
 
 /// Misbehaves in the middle of the run, that is before step `steps / 2 + 1`.
-pub fn midway(student: Student) -> io::Result<Midway> {
+pub fn midway(student: Student) -> io::Result<MidwayAct> {
     match student.mistake_in(&[Area::Process]) {
-        Some(Mistake::HostileExitMidway) => return Ok(Midway::Leave(3)),
-        Some(Mistake::HostileTruncated) => return Ok(Midway::LeaveInsideRecord(0)),
+        Some(Mistake::HostileExitMidway) => return Ok(MidwayAct::Leave(3)),
+        Some(Mistake::HostileTruncated) => return Ok(MidwayAct::LeaveInsideRecord(0)),
         Some(Mistake::HostileCrash) => std::process::abort(),
         Some(Mistake::HostileLoop) => loop {
             black_box(());
@@ -101,7 +101,7 @@ pub fn midway(student: Student) -> io::Result<Midway> {
         }
         _ => {}
     }
-    Ok(Midway::GoOn)
+    Ok(MidwayAct::GoOn)
 }
 
 /// Writes the bytes behind the last record.

@@ -10,7 +10,7 @@ use fosssim_oracle::student::{self, StepLog, Student, World};
 
 use crate::{
     arguments::Options,
-    hostile::{self, Midway},
+    hostile::{self, MidwayAct},
     trace::Trace,
 };
 
@@ -58,9 +58,9 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
     for step in 1..=steps {
         if step == steps / 2 + 1 {
             match hostile::midway(world.student)? {
-                Midway::GoOn => {}
-                Midway::Leave(code) => return Ok(code),
-                Midway::LeaveInsideRecord(code) => {
+                MidwayAct::GoOn => {}
+                MidwayAct::Leave(code) => return Ok(code),
+                MidwayAct::LeaveInsideRecord(code) => {
                     trace.raw(&[0; 5])?;
                     trace.flush()?;
                     std::process::exit(code.into());

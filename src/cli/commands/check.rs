@@ -79,7 +79,7 @@ fn write(
         CheckFormat::Text => check.text(style),
         CheckFormat::Json => check.json(),
         CheckFormat::Github => check.github(),
-        CheckFormat::Html => page::of_examined(check, examined, &evidence()),
+        CheckFormat::Html => page::examined_page(check, examined, &evidence()),
     };
     match (target, format) {
         (Some(target), format) => target.finish_and_tell(text.as_bytes(), format == CheckFormat::Html),

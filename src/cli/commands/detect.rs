@@ -7,7 +7,7 @@ use crate::{
         output::Output,
         pictures::{DetectArguments, DetectFormat},
     },
-    evidence::{self, InspectedPair, Logged},
+    evidence::{self, CallLog, InspectedPair},
     judge::{overlap::OverlapStudy, study::Study},
     render::{detection, plot::Embedding},
     report::{
@@ -27,7 +27,7 @@ const NO_ANSWER: &str = "there is no answer: the numbers are too large or too sm
 
 pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
     match &arguments.scene {
-        Some(scene) => of_scene(arguments, scene),
+        Some(scene) => detect_in_scene(arguments, scene),
         None => show(arguments, &study(&typed(arguments)?)?, None, &[]),
     }
 }
@@ -79,7 +79,7 @@ fn typed(arguments: &DetectArguments) -> Result<PairMotion> {
 }
 
 /// Reports on a pair of a scene, in a step of the reference's run or of a trace.
-fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
+fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let scene = input::scene(name)?;
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.steps();
@@ -87,7 +87,7 @@ fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         let steps = counted(steps.into(), "step");
         bail!("the scene {} has {steps}, counted from 1; there is no step {step}", scene.name);
     }
-    let pair = pair::of_scene(word, &scene.scene).with_context(|| format!("the pair {word}"))?;
+    let pair = pair::find_pair(word, &scene.scene).with_context(|| format!("the pair {word}"))?;
     let mut inputs: Vec<_> = scene.identity.into_iter().collect();
     let (before, traced) = match &arguments.trace {
         Some(trace) => {
@@ -123,7 +123,7 @@ fn of_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
         None => study(&PairMotion::between(&scene.scene, pair, &before.positions, &end.positions))?,
     };
     let pass = call.filter(|call| call.polynomials > 0).map(|call| call.pass);
-    let logged = call.map_or(&Logged::Unknown, |call| &call.logged);
+    let logged = call.map_or(&CallLog::Unknown, |call| &call.logged);
     let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
     let place = Place { scene, trace, step, pair, pass, passes, logged };
     show(arguments, &study, Some(place), &inputs)
@@ -141,7 +141,7 @@ fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
 }
 
 /// The records of a step in a trace.
-struct Traced {
+struct TracedStep {
     before: State,
     /// The mid record's state; that of the record before the step's end where the scene has none.
     mid: State,
@@ -150,7 +150,7 @@ struct Traced {
     identity: Option<Identity>,
 }
 
-fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {
+fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<TracedStep> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(&scene.scene);
     let mut reader = trace.records(&scene.scene);
@@ -175,5 +175,5 @@ fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<Traced> {
             }
         }
     }
-    Ok(Traced { before, mid, end: frame, name: trace.name, identity: trace.identity })
+    Ok(TracedStep { before, mid, end: frame, name: trace.name, identity: trace.identity })
 }

@@ -6,7 +6,7 @@ use super::{
 use crate::{
     assignments::Assignment,
     cli::{
-        arguments::{Explain, ExplainFormat},
+        arguments::{ExplainArguments, ExplainFormat},
         console, exit, input,
         output::Output,
     },
@@ -24,10 +24,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-pub(super) fn run(arguments: &Explain) -> Result<u8> {
+pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &[])).transpose()?;
     let (diagnosis, cards) = match (&arguments.program, &arguments.inputs[..]) {
-        (Some(program), scenes) => match of_program(program, scenes, arguments)? {
+        (Some(program), scenes) => match explain_program(program, scenes, arguments)? {
             Some(explained) => (explained.diagnosis, explained.cards),
             None => return Ok(exit::INTERRUPTED),
         },
@@ -52,7 +52,11 @@ pub(super) fn run(arguments: &Explain) -> Result<u8> {
 }
 
 /// Runs a program on scenes that make every term of every formula visible, and on those that are named.
-fn of_program(program: &Path, scenes: &[PathBuf], arguments: &Explain) -> Result<Option<ExaminedProgram>> {
+fn explain_program(
+    program: &Path,
+    scenes: &[PathBuf],
+    arguments: &ExplainArguments,
+) -> Result<Option<ExaminedProgram>> {
     let suite = arguments.suite.map(Assignment::key);
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
     let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
@@ -66,11 +70,11 @@ fn of_program(program: &Path, scenes: &[PathBuf], arguments: &Explain) -> Result
     Ok(explained)
 }
 
-fn drawing(arguments: &Explain) -> Drawing {
+fn drawing(arguments: &ExplainArguments) -> Drawing {
     Drawing { hints: arguments.hints, has_pictures: arguments.format == ExplainFormat::Html }
 }
 
-fn trace_on_scene(scene: &Path, trace: &Path, arguments: &Explain) -> Result<(Case, Option<Card>)> {
+fn trace_on_scene(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Result<(Case, Option<Card>)> {
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
     if let Some(kind) = trace.looks_like {

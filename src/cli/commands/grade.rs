@@ -8,13 +8,13 @@ use super::{
     pages::{self, Pages},
     results::{Report, Results, refuse_several, reports, wanted_pages},
     shard::Sharding,
-    submissions::{Found, Search},
+    submissions::{FoundSubmissions, Search},
     timings, traces,
 };
 use crate::{
     cli::{
         console, exit,
-        grading::Grade as Arguments,
+        grading::GradeArguments as Arguments,
         interrupt::{cancelled_by_signals, still_at_work},
         output,
         selection::Selection,
@@ -32,8 +32,8 @@ use crate::{
     sandbox::{Backend, Supervisor},
     suite::{
         Cancellation, EarlierGrade, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
-        batch::{self, Graded},
-        cards::Judged,
+        batch::{self, BatchResult},
+        cards::JudgedTrace,
         config::Visibility,
         grader::Options,
         guarded,
@@ -90,7 +90,8 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     if arguments.output.is_none() && output.is_symlink() {
         bail!("{} is a link, which is not followed unless you name it: --output {0}", output.display());
     }
-    let Found { mut submissions, passed_over } = Search::new(arguments, plan.build.as_ref(), &output).run()?;
+    let FoundSubmissions { mut submissions, passed_over } =
+        Search::new(arguments, plan.build.as_ref(), &output).run()?;
     let sharding = arguments.shard.map(|shard| Sharding::new(shard, &plan, arguments, &submissions, &output));
     let output = sharding.as_ref().map_or(output, |sharding| sharding.folder.clone());
     if let Some(sharding) = &sharding {
@@ -239,7 +240,7 @@ impl GradingSession<'_> {
         if let (Some(pages), true) = (&self.pages, fresh) {
             pages.forget();
         }
-        let draw = |judged: &Judged<'_>| pages::draw(judged, self.arguments.recorded);
+        let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
         let log_error = OnceLock::new();
         let finish = |grade: &Grade| {
             if let (Some(folder), None) = (&self.folder, log_error.get())
@@ -273,7 +274,8 @@ impl GradingSession<'_> {
             }
         };
         let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
-        let Graded { mut grades, fault } = batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
+        let BatchResult { mut grades, fault } =
+            batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
         grade::warn_of(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))

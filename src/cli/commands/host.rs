@@ -6,7 +6,7 @@ use super::{
 use crate::{
     cli::{
         console, exit,
-        grading::{Demo, Selftest},
+        grading::{DemoArguments, SelftestArguments},
         interrupt::cancelled_by_signals,
         output,
     },
@@ -15,7 +15,7 @@ use crate::{
     report::{formats::Format, number::counted, page::Audience},
     sandbox::{self, selftest},
     student,
-    suite::{Grader, Submission, Verdict, batch, cards::Judged, grader::Options, plan},
+    suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, plan},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -60,7 +60,7 @@ pub(super) fn doctor() -> Result<u8> {
     Ok(if safe { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-pub(super) fn demo(arguments: &Demo) -> Result<u8> {
+pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let sample = match &arguments.sample {
         Some(sample) => sample.clone(),
         None => std::env::current_exe().context("where is this program?")?.with_file_name("fosssim-sample"),
@@ -80,7 +80,9 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let pages = Pages::new(None, false)?;
-    let draw = |judged: &Judged<'_>| pages::draw(&Judged { name: &format!("asset:{}", judged.name), ..*judged }, false);
+    let draw = |judged: &JudgedTrace<'_>| {
+        pages::draw(&JudgedTrace { name: &format!("asset:{}", judged.name), ..*judged }, false)
+    };
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, run) in [
         ("right sample".to_owned(), plan.run.clone()),
@@ -116,7 +118,7 @@ pub(super) fn demo(arguments: &Demo) -> Result<u8> {
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
         console::print("The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
-            output::write(&arguments.output, pages.of_one(grade, None, Audience::Staff).as_bytes())?;
+            output::write(&arguments.output, pages.render_one(grade, None, Audience::Staff).as_bytes())?;
             let words = format!("What is wrong with it, to look at in a browser: {}\n", arguments.output.display());
             console::print(&words)?;
         }
@@ -143,7 +145,7 @@ fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
     Ok(exit::ACCEPTED)
 }
 
-pub(super) fn selftest(arguments: &Selftest) -> Result<u8> {
+pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let mut backend = backend(false)?;
     for name in &arguments.without {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);

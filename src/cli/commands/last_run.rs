@@ -19,13 +19,13 @@ const FILE: &str = "last-run.json";
 const LARGEST: u64 = 256 << 20;
 
 /// By submission and scene, whether it was accepted.
-type Known = BTreeMap<String, BTreeMap<String, bool>>;
+type AcceptedScenes = BTreeMap<String, BTreeMap<String, bool>>;
 
 /// The verdicts of the last run.
 #[derive(Debug, Default)]
 pub(super) struct LastRun {
     file: Option<Place>,
-    known: Known,
+    known: AcceptedScenes,
 }
 
 impl LastRun {

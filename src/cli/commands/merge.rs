@@ -7,7 +7,7 @@ use super::{
     shard::Part,
 };
 use crate::{
-    cli::{console, grading::Merge, input, interrupt::clean_up_when_interrupted, output},
+    cli::{console, grading::MergeArguments, input, interrupt::clean_up_when_interrupted, output},
     files::{FileError, Folder, FolderEntry, Place},
     report::{
         grade::{self, TextDetail},
@@ -34,7 +34,7 @@ const DEEPEST: usize = 4;
 /// A larger file is none that a grading leaves.
 const LARGEST_FILE: u64 = 2 << 30;
 
-pub(super) fn run(arguments: &Merge) -> Result<u8> {
+pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let reports = reports(&arguments.format)?;
     clean_up_when_interrupted();
     let parts = find(&arguments.folders)?;
@@ -106,7 +106,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
 }
 
 /// Checks that all shards of one grading are there, each once; one of them, and where the results go.
-fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &Merge) -> Result<(&'a Part, PathBuf)> {
+fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
         if let Some(what) = first.common.difference(&part.common) {

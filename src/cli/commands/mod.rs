@@ -32,7 +32,7 @@ mod trace;
 mod traces;
 
 use super::{
-    arguments::{Command, Trace},
+    arguments::{Command, TraceCommand},
     console, exit,
 };
 use anyhow::Result;
@@ -49,7 +49,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Shrink(arguments) => return shrink::run(arguments),
         Command::Render(arguments) => return render::run(arguments),
-        Command::Trace(Trace::Info(arguments)) => return trace::info(arguments),
+        Command::Trace(TraceCommand::Info(arguments)) => return trace::info(arguments),
         Command::Record(arguments) => return record::run(arguments),
         Command::Grade(arguments) => return grade::run(arguments),
         Command::Merge(arguments) => return merge::run(arguments),
@@ -60,7 +60,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Original(_) => return Ok(exit::FAULT),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),
-        Command::Trace(Trace::Show(arguments)) => trace::show(arguments),
+        Command::Trace(TraceCommand::Show(arguments)) => trace::show(arguments),
         Command::Suite(arguments) => suite::run(arguments),
         Command::Scene(arguments) => scene::run(arguments),
         Command::Serve(arguments) => serve::run(arguments),

@@ -11,7 +11,7 @@ use crate::{
     },
     suite::{
         Grade, PassedOver, SceneGrade,
-        cards::{self, Cards, Draw, Judged},
+        cards::{self, Cards, Draw, JudgedTrace},
         config::Hints,
         guarded,
     },
@@ -71,7 +71,7 @@ impl Pages {
     }
 
     /// Returns the page of one submission.
-    pub(super) fn of_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
+    pub(super) fn render_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
         GradePage { grade, card: &|scene| self.card(scene), class, reader }.html()
     }
 
@@ -91,15 +91,15 @@ impl Pages {
         if reader == Audience::Student || grades.len() > 1 {
             grades.par_iter().try_for_each(|grade| {
                 let name = format!("students/{}.html", file_name(&grade.submission));
-                write(&name, &self.of_one(grade, None, Audience::Student)).map(drop)
+                write(&name, &self.render_one(grade, None, Audience::Student)).map(drop)
             })?;
         }
         if let [grade] = grades {
-            return write("report.html", &self.of_one(grade, None, Audience::Staff));
+            return write("report.html", &self.render_one(grade, None, Audience::Staff));
         }
         grades.par_iter().try_for_each(|grade| {
             let name = format!("reports/{}.html", file_name(&grade.submission));
-            write(&name, &self.of_one(grade, Some("../index.html"), Audience::Staff)).map(drop)
+            write(&name, &self.render_one(grade, Some("../index.html"), Audience::Staff)).map(drop)
         })?;
         // Names of files hold nothing that an address would have to write otherwise, but blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
@@ -114,7 +114,7 @@ const RECORDED: &str = "The verdict compares with the recording, where nearly ev
 
 /// Draws the card of a graded scene. Of a trace that was judged against a recording each step is judged once more, from
 /// the trace's own state.
-pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
+pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;
     }
@@ -125,7 +125,7 @@ pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
         });
         // A failure while drawing costs nobody's points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
-        let own = Judged { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
+        let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw(&own, false).map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
     }
     // A picture that can't be made costs nobody's points.
@@ -138,8 +138,8 @@ pub(super) fn draw(judged: &Judged<'_>, recorded: bool) -> Option<String> {
 
 /// Returns the card of a judged trace. `trace_name` is where its reader finds the trace, `depth` that of the heading
 /// above.
-pub(super) fn card(judged: &Judged<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
-    let Judged { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
+pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
+    let JudgedTrace { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));
     let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
     let what_if = match (hints, explanations.first()) {

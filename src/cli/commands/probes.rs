@@ -15,13 +15,13 @@ use crate::{
         number::counted,
         page::Card,
     },
-    sandbox::{Backend, Ended},
+    sandbox::{Backend, RunEnd},
     scene::{self, Scene},
     suite::{
         Cancellation, Folders, Runner, SceneTask,
-        cards::Judged,
+        cards::JudgedTrace,
         config::{Hints, RunLimits},
-        located::{ContentIndex, Contents, Failing, LocatedFailure, TriedScene, locate},
+        located::{ContentIndex, Contents, FailureKind, LocatedFailure, TriedScene, locate},
         milestone,
         plan::{self, Plan},
     },
@@ -70,7 +70,7 @@ pub(super) struct ExaminedProgram {
     /// The scene of each case.
     pub(super) tasks: Vec<SceneTask>,
     /// How the program ended on each, and the number of complete steps.
-    pub(super) ends: Vec<(Ended, u32)>,
+    pub(super) ends: Vec<(RunEnd, u32)>,
 }
 
 impl ProgramUnderTest {
@@ -143,7 +143,7 @@ impl ProgramUnderTest {
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
         let (long, short) = (self.limits(true), self.limits(false));
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
-        let bar = console::Bar::of_runs(tasks.len() as u64);
+        let bar = console::Bar::for_runs(tasks.len() as u64);
         for task in &tasks {
             if stopped >= MOST_STOPPED {
                 break;
@@ -155,11 +155,12 @@ impl ProgramUnderTest {
             if self.cancellation.is_cancelled() {
                 return Ok(None);
             }
-            if let Ended::CouldNotStart(problem) = &outcome.ended {
+            if let RunEnd::CouldNotStart(problem) = &outcome.ended {
                 bail!("{}: {problem}", self.program.display());
             }
-            let failing = Failing::from_end(&outcome.ended);
-            stopped += usize::from(matches!(failing, Some(Failing::Time | Failing::Memory | Failing::Output)));
+            let failing = FailureKind::from_end(&outcome.ended);
+            stopped +=
+                usize::from(matches!(failing, Some(FailureKind::Time | FailureKind::Memory | FailureKind::Output)));
             let note = note(&outcome.ended, trace.is_empty(), &outcome.stderr.bytes);
             let names = (task.name.clone(), self.program.display().to_string());
             let (case, card, steps) = case(names, false, &task.scene, &trace[..], note, drawing);
@@ -216,7 +217,7 @@ pub(super) fn case(
     let explanations = cut(hints, explanations);
     let draws = has_pictures && !accepted;
     let card = draws.then(|| {
-        let judged = Judged {
+        let judged = JudgedTrace {
             scene,
             name: &name,
             explanations: &explanations,
@@ -253,9 +254,9 @@ fn placed(program: &Path) -> PathBuf {
 }
 
 /// Returns the remark on how a program ended, unless it ended well.
-fn note(ended: &Ended, is_traceless: bool, stderr: &[u8]) -> Option<String> {
+fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
-        (Ended::Exited(0), false) => None,
+        (RunEnd::Exited(0), false) => None,
         (ended, false) => Some(format!("the program {ended}")),
         (ended, true) => Some(format!("the program {ended} and wrote no trace{}", said(stderr))),
     }
@@ -280,8 +281,8 @@ fn said(stderr: &[u8]) -> String {
 
 /// Returns the properties that the failing scenes have in common, by the end of the program in each and the number of
 /// complete steps.
-fn located(tasks: &[SceneTask], ends: &[(Ended, u32)]) -> Option<LocatedFailure> {
-    let ends: Vec<_> = ends.iter().map(|(ended, steps)| (Failing::from_end(ended), *steps)).collect();
+fn located(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure> {
+    let ends: Vec<_> = ends.iter().map(|(ended, steps)| (FailureKind::from_end(ended), *steps)).collect();
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
     }

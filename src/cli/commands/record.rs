@@ -1,6 +1,6 @@
 //! `record`: the recordings of a folder of scenes.
 use crate::{
-    cli::{arguments::Record, console, exit, output},
+    cli::{arguments::RecordArguments, console, exit, output},
     files::{self, FileError, Place},
     report::number::counted,
     scene::LARGEST_SCENE,
@@ -16,7 +16,7 @@ use std::{io, path::Path};
 /// A recording of more bytes is none.
 const LARGEST_RECORDING: u64 = 1 << 30;
 
-pub(super) fn run(arguments: &Record) -> Result<u8> {
+pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
     // A folder that was named is used even if it does not exist.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Record) -> Result<u8> {
     if !arguments.check {
         return write(&recordings, &arguments.references);
     }
-    check(&recordings, &Recorded((!embedded).then_some(&arguments.references)))
+    check(&recordings, &EarlierRecordings((!embedded).then_some(&arguments.references)))
 }
 
 /// A scene to record.
@@ -70,9 +70,9 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
 }
 
 /// The recordings before this run: those in a folder, or those that come with the program.
-struct Recorded<'a>(Option<&'a Path>);
+struct EarlierRecordings<'a>(Option<&'a Path>);
 
-impl Recorded<'_> {
+impl EarlierRecordings<'_> {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
         let Some(folder) = self.0 else { return Ok(library::reference(path).map(<[u8]>::to_vec)) };
         match Place::new(folder, path).read(LARGEST_RECORDING) {
@@ -92,7 +92,7 @@ impl Recorded<'_> {
 }
 
 /// Compares with what was recorded before, byte for byte.
-fn check(recordings: &[(String, Recording)], old: &Recorded<'_>) -> Result<u8> {
+fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Result<u8> {
     let mut text = String::new();
     for (stem, recording) in recordings {
         let (packed, steps) = (old.file(&format!("{stem}.bin.zst"))?, old.file(&format!("{stem}.steps"))?);
@@ -128,7 +128,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         replace(&place("steps"), recording.digests.as_bytes())?;
     }
     // The folder holds what the scenes give and nothing else.
-    for stem in Recorded(Some(folder)).stems() {
+    for stem in EarlierRecordings(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {
                 drop(Place::new(folder, format!("{stem}.{extension}")).remove());

@@ -1,7 +1,7 @@
 //! Where results of a grading go: reports that were asked for, and the tables and pages of a folder.
 use super::pages::Pages;
 use crate::{
-    cli::{console, grading::Grade as Arguments, output},
+    cli::{console, grading::GradeArguments as Arguments, output},
     files::{Place, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
     suite::{Grade, PassedOver, guarded},
@@ -151,18 +151,18 @@ impl Results<'_> {
             }));
         }
         if let (Some(file), Some(pages), [grade]) = (self.staff_page, self.pages, grades) {
-            keep(write(file, || pages.of_one(grade, None, Audience::Staff)));
+            keep(write(file, || pages.render_one(grade, None, Audience::Staff)));
         }
         if let (Some(file), Some(pages), [grade]) = (self.published_page, self.pages, grades)
             && !grade.is_visible()
         {
-            keep(write(file, || pages.of_one(&grade.published(), None, Audience::Student)));
+            keep(write(file, || pages.render_one(&grade.published(), None, Audience::Student)));
         }
         for report in reports {
-            let told = self.told(report.format);
+            let told = self.visible_grades(report.format);
             let grades = told.as_ref();
             let render = || match (report.format, self.pages, grades) {
-                (Format::Html, Some(pages), [grade]) => pages.of_one(grade, None, self.reader),
+                (Format::Html, Some(pages), [grade]) => pages.render_one(grade, None, self.reader),
                 _ => report.format.render_class(grades, passed_over),
             };
             match (&report.file, report.format) {
@@ -185,8 +185,8 @@ impl Results<'_> {
 
 impl<'a> Results<'a> {
     /// Returns the grades with no more in them than this format tells the reader.
-    fn told(&self, format: Format) -> Cow<'a, [Grade]> {
-        let told = |grade: &'a Grade| format.told(grade, self.reader, self.platform_hides);
+    fn visible_grades(&self, format: Format) -> Cow<'a, [Grade]> {
+        let told = |grade: &'a Grade| format.visible_part(grade, self.reader, self.platform_hides);
         if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
             return Cow::Borrowed(self.grades);
         }

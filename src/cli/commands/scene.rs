@@ -2,7 +2,7 @@
 use crate::{
     cli::{
         console, output,
-        scenes::{Scene, SceneExport, SceneList, SceneShow},
+        scenes::{SceneCommand, SceneExportArguments, SceneListArguments, SceneShowArguments},
         selection::Selection,
     },
     files::{FileError, Place},
@@ -12,11 +12,11 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 
-pub(super) fn run(command: &Scene) -> Result<()> {
+pub(super) fn run(command: &SceneCommand) -> Result<()> {
     match command {
-        Scene::List(SceneList { patterns, quiet }) => list(patterns, *quiet),
-        Scene::Show(SceneShow { name }) => show(name),
-        Scene::Export(arguments) => export(arguments),
+        SceneCommand::List(SceneListArguments { patterns, quiet }) => list(patterns, *quiet),
+        SceneCommand::Show(SceneShowArguments { name }) => show(name),
+        SceneCommand::Export(arguments) => export(arguments),
     }
 }
 
@@ -50,7 +50,7 @@ fn show(name: &str) -> Result<()> {
     }
 }
 
-fn export(arguments: &SceneExport) -> Result<()> {
+fn export(arguments: &SceneExportArguments) -> Result<()> {
     let names = matching(&arguments.patterns)?;
     let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
     for name in names {

@@ -3,7 +3,7 @@
 use crate::{
     cli::{
         console,
-        grading::{Grade as Arguments, MOST_SHARDS, Shard},
+        grading::{GradeArguments as Arguments, MOST_SHARDS, ShardArgument},
         output,
     },
     files::{FileError, Place},
@@ -27,7 +27,7 @@ const SCHEMA: u32 = 1;
 
 /// The inputs that all shards of one grading share.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Common {
+pub(super) struct SharedInputs {
     schema: u32,
     /// The grader's version.
     version: String,
@@ -43,7 +43,7 @@ pub(super) struct Common {
     pub(super) submissions: Vec<String>,
 }
 
-impl Common {
+impl SharedInputs {
     /// Returns the difference of two gradings, as a sentence.
     pub(super) fn difference(&self, other: &Self) -> Option<&'static str> {
         [
@@ -64,7 +64,7 @@ impl Common {
 /// The result of a shard.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Part {
-    pub(super) common: Common,
+    pub(super) common: SharedInputs,
     /// Which one it is, from 1.
     pub(super) number: usize,
     /// The grades of its own submissions, in order.
@@ -124,8 +124,8 @@ fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
 
 /// A grading that is a shard.
 pub(super) struct Sharding {
-    shard: Shard,
-    common: Common,
+    shard: ShardArgument,
+    common: SharedInputs,
     /// The shard's own folder.
     pub(super) folder: PathBuf,
     /// The file as a place that no link leads to.
@@ -134,8 +134,14 @@ pub(super) struct Sharding {
 
 impl Sharding {
     /// Creates the shard of a grading of all these submissions.
-    pub(super) fn new(shard: Shard, plan: &Plan, arguments: &Arguments, all: &[Submission], output: &Path) -> Self {
-        let common = Common {
+    pub(super) fn new(
+        shard: ShardArgument,
+        plan: &Plan,
+        arguments: &Arguments,
+        all: &[Submission],
+        output: &Path,
+    ) -> Self {
+        let common = SharedInputs {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             grader: this_build().to_owned(),
@@ -224,9 +230,9 @@ mod tests {
 
     #[test]
     fn a_shard_is_one_of_so_many() {
-        assert_eq!("2/8".parse(), Ok(Shard { number: 2, of: 8 }));
+        assert_eq!("2/8".parse(), Ok(ShardArgument { number: 2, of: 8 }));
         for word in ["0/8", "9/8", "2", "2/", "/8", "-1/8", "2/0", "a/b", "1/2/3"] {
-            assert!(word.parse::<Shard>().is_err(), "{word}");
+            assert!(word.parse::<ShardArgument>().is_err(), "{word}");
         }
     }
 }

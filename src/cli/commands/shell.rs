@@ -1,6 +1,6 @@
 //! Completion scripts and the manual page.
 use crate::cli::{
-    arguments::{Arguments, Completions, Man},
+    arguments::{Arguments, CompletionsArguments, ManArguments},
     console,
 };
 use anyhow::{Result, bail};
@@ -10,7 +10,7 @@ use clap_complete::Shell;
 /// The name under which the program is installed.
 const NAME: &str = "fosssim-oracle";
 
-pub(super) fn completions(arguments: &Completions) -> Result<()> {
+pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
     if arguments.shell == Shell::Bash {
@@ -27,7 +27,7 @@ fn mended(script: &[u8]) -> Vec<u8> {
     String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
 }
 
-pub(super) fn manual(arguments: &Man) -> Result<()> {
+pub(super) fn manual(arguments: &ManArguments) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
     // Gives the commands their full names.
     command.build();

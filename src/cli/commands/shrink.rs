@@ -2,7 +2,7 @@
 use super::probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks};
 use crate::{
     cli::{
-        arguments::{ExplainFormat, Shrink},
+        arguments::{ExplainFormat, ShrinkArguments},
         console, exit,
         output::Output,
     },
@@ -23,8 +23,8 @@ use crate::{
     sim::{Pair, State, pairs},
     suite::{
         config::Hints,
-        located::Failing,
-        smallest::{ShrinkLimits, Shrinker, Smallest, WrongScene, causes},
+        located::FailureKind,
+        smallest::{ShrinkLimits, Shrinker, SmallestScene, WrongScene, causes},
     },
     together::told::cut,
     trace::{Frame, Layout, Reader},
@@ -38,7 +38,7 @@ pub(super) const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration:
 /// Runs at one time.
 const JOBS: usize = 2;
 
-pub(super) fn run(arguments: &Shrink) -> Result<u8> {
+pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
     let tasks = match (&arguments.scene, &arguments.suite) {
         (Some(scene), _) => named_tasks(std::slice::from_ref(scene))?,
@@ -106,7 +106,7 @@ pub(super) fn add_smallest(
         limits,
     };
     let causes = causes(&diagnosis.common, &wrong);
-    let bar = console::Bar::of_runs(causes.len() as u64);
+    let bar = console::Bar::for_runs(causes.len() as u64);
     let mut found: Vec<SmallestReport> = Vec::new();
     for mut cause in causes {
         bar.next_run("making scenes smaller");
@@ -116,7 +116,7 @@ pub(super) fn add_smallest(
             continue;
         };
         let name = program.program.display().to_string();
-        let failing = Failing::from_end(&small.seen.ended);
+        let failing = FailureKind::from_end(&small.seen.ended);
         let note = failing.map(|_| format!("the program {}", small.seen.ended));
         let names = (small.origin.clone(), name);
         let (mut case, card, _) = case(names, false, &small.small.scene, &small.seen.trace[..], note, drawing);
@@ -153,7 +153,7 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
 
 /// Returns the values that differ, and the pair that tells most: that of the first finding, else one that collides,
 /// else the first.
-fn differences(small: &Smallest, style: Style) -> (Option<String>, Option<Pair>) {
+fn differences(small: &SmallestScene, style: Style) -> (Option<String>, Option<Pair>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
@@ -178,7 +178,7 @@ fn differences(small: &Smallest, style: Style) -> (Option<String>, Option<Pair>)
 }
 
 /// Returns what the reference computes for a pair in a scene of one step, beside what the trace has of it.
-fn by_hand(small: &Smallest, pair: Pair, style: Style) -> Option<String> {
+fn by_hand(small: &SmallestScene, pair: Pair, style: Style) -> Option<String> {
     let scene: &Scene = &small.small.scene;
     let layout = Layout::for_scene(scene);
     let (before, frames) = (State::for_scene(scene), frames(&small.seen.trace, layout));
@@ -200,7 +200,7 @@ fn by_hand(small: &Smallest, pair: Pair, style: Style) -> Option<String> {
 
 /// Returns the records of a trace, as far as they can be read.
 fn frames(trace: &[u8], layout: Layout) -> Vec<Frame> {
-    let mut reader = Reader::of_slice(trace, layout);
+    let mut reader = Reader::from_slice(trace, layout);
     let mut frames = Vec::new();
     let mut frame = Frame::default();
     while frames.len() < 4 && matches!(reader.next(&mut frame), Ok(true)) {

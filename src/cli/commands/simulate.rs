@@ -1,13 +1,13 @@
 //! `simulate`: simulates a scene and records its trace.
 use crate::{
-    cli::{arguments::Simulate, console, input, output::Output, values::TextOrJson},
+    cli::{arguments::SimulateArguments, console, input, output::Output, values::TextOrJson},
     report::{describe::no_result, simulate::SimulationSummary, style::Style},
     sim::{RootSearch, Simulation},
     trace::{EventCounts, Layout, Recorder},
 };
 use anyhow::{Context, Result, bail};
 
-pub(super) fn run(arguments: &Simulate) -> Result<()> {
+pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
     let scene = input::scene(&arguments.scene)?;
     let inputs: Vec<_> = scene.identity.into_iter().collect();
     let output = match &arguments.output {

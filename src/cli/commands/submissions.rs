@@ -1,6 +1,6 @@
 //! Finds the submissions that the arguments of `grade` mean.
 use crate::{
-    cli::{console, grading::Grade, input},
+    cli::{console, grading::GradeArguments, input},
     files::{Folder, Identity},
     suite::{OneFile, PassedOver, Submission, config::BuildStep, names},
 };
@@ -28,7 +28,7 @@ const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 const MOST_ENTRIES: usize = 100_000;
 
 /// The submissions of a command line, and entries that are none.
-pub(super) struct Found {
+pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
     pub(super) passed_over: Vec<PassedOver>,
 }
@@ -47,7 +47,7 @@ struct Entry {
 
 /// Where submissions are looked for, and what is none.
 pub(super) struct Search<'a> {
-    arguments: &'a Grade,
+    arguments: &'a GradeArguments,
     /// How the suite builds.
     build: Option<&'a BuildStep>,
     /// The folder for results.
@@ -56,7 +56,7 @@ pub(super) struct Search<'a> {
 
 impl<'a> Search<'a> {
     /// Creates a search among these arguments.
-    pub(super) const fn new(arguments: &'a Grade, build: Option<&'a BuildStep>, output: &'a Path) -> Self {
+    pub(super) const fn new(arguments: &'a GradeArguments, build: Option<&'a BuildStep>, output: &'a Path) -> Self {
         Self { arguments, build, output }
     }
 
@@ -64,7 +64,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     /// Paths that are not there, folders without any submission.
-    pub(super) fn run(&self) -> Result<Found> {
+    pub(super) fn run(&self) -> Result<FoundSubmissions> {
         let (mut found, mut passed_over) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {
             let data = fs::metadata(path).with_context(|| format!("no submission at {}", path.display()))?;
@@ -91,7 +91,7 @@ impl<'a> Search<'a> {
         let submissions = submissions
             .map(|((entry, name), file)| Submission { name, path: entry.folder, program: entry.program, file })
             .collect();
-        Ok(Found { submissions, passed_over })
+        Ok(FoundSubmissions { submissions, passed_over })
     }
 
     /// Returns the submission that a folder is: its sources when they are to be built, else the program inside. A

@@ -1,12 +1,12 @@
 //! `suite`: writes, checks and explains suites.
 use super::{
-    suite_report::{SuiteContents, Undecided, list, list_json, text},
+    suite_report::{SuiteContents, UndecidedScene, list, list_json, text},
     suite_sight::seen_parts,
 };
 use crate::{
     cli::{
         console,
-        grading::{Suite, SuiteCheck, SuiteInit, SuiteList},
+        grading::{SuiteCheckArguments, SuiteCommand, SuiteInitArguments, SuiteListArguments},
         output::Output,
     },
     judge::fair::borderline,
@@ -15,22 +15,22 @@ use crate::{
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-pub(super) fn run(suite: &Suite) -> Result<()> {
+pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
     match suite {
-        Suite::Init(SuiteInit { name, output }) => {
+        SuiteCommand::Init(SuiteInitArguments { name, output }) => {
             let text = template(name.as_deref())?;
             match output {
                 Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
                 None => console::print(&text),
             }
         }
-        Suite::Check(SuiteCheck { suite, missing, mistakes }) => {
+        SuiteCommand::Check(SuiteCheckArguments { suite, missing, mistakes }) => {
             let plan = plan::find(suite)?;
             let parts = if *mistakes { seen_parts(&plan) } else { Vec::new() };
             let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing, parts };
             console::report(&text(&plan, &contents, &undecided(&plan), console::style()))
         }
-        Suite::List(SuiteList { format }) => {
+        SuiteCommand::List(SuiteListArguments { format }) => {
             let suites = built_in()?;
             console::show(*format, || list(&suites, console::style()), || list_json(&suites))
         }
@@ -52,7 +52,7 @@ fn built_in() -> Result<Vec<(String, plan::Plan)>> {
 }
 
 /// Runs the reference on every scene, on all cores, and keeps those with something to say.
-fn undecided(plan: &plan::Plan) -> Vec<Undecided> {
+fn undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().map(|task| (task.name.clone(), borderline(&task.scene)));
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()

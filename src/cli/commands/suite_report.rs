@@ -21,7 +21,7 @@ use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
 /// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
-pub(super) type Undecided = (String, Result<Vec<Borderline>, StepError>);
+pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
 /// The greatest number of decisions listed of a scene.
 const LISTED: usize = 3;
@@ -38,13 +38,13 @@ pub(super) struct SuiteContents {
 }
 
 /// Renders the whole report; `undecided` holds the scenes of which there is something to say.
-pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided], style: Style) -> String {
+pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
-        text += &of_group(group, style);
+        text += &describe_group(group, style);
     }
-    text += &of_contents(contents, style);
-    text += &of_mistakes(&contents.parts, style);
+    text += &describe_contents(contents, style);
+    text += &describe_mistakes(&contents.parts, style);
     let unknown = unknown(plan, style);
     text += &unknown.concat();
     for (scene, found) in undecided {
@@ -151,7 +151,7 @@ fn head(plan: &Plan, style: Style) -> String {
     let levels: BTreeSet<Hints> = plan.groups.iter().map(|group| group.marking.hints).collect();
     let several = levels.len() > 1;
     for level in levels {
-        let (hints, meaning) = level.words();
+        let (hints, meaning) = level.describe();
         let groups = plan.groups.iter().filter(|group| group.marking.hints == level);
         let groups: Vec<String> = groups.map(|group| one_line(&group.name)).collect();
         let of_groups = if several { format!(" of {}", groups.join(", ")) } else { String::new() };
@@ -160,11 +160,11 @@ fn head(plan: &Plan, style: Style) -> String {
     text
 }
 
-fn of_group(group: &PlannedGroup, style: Style) -> String {
+fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
     let (points, visibility) = (counted_points(marking.points), key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
-    let (credit, hints) = (credit(marking.credit), marking.hints.words().0);
+    let (credit, hints) = (credit(marking.credit), marking.hints.describe().0);
     let extra = if marking.extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
@@ -183,7 +183,7 @@ fn of_group(group: &PlannedGroup, style: Style) -> String {
 }
 
 /// Returns how much of what can happen in steps the scenes contain; nothing for scenes of earlier assignments.
-fn of_contents(contents: &SuiteContents, style: Style) -> String {
+fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {
         return String::new();
@@ -197,7 +197,7 @@ fn of_contents(contents: &SuiteContents, style: Style) -> String {
         (all_seen, all) = (all_seen + seen, all + possible);
         let _ = writeln!(text, "  {:width$}  {seen:4} of {possible:4}", family.name);
         for missing in coverage.missing().filter(|one| contents.lists_missing && one.family == index) {
-            let _ = writeln!(text, "    missing: {}", missing.words());
+            let _ = writeln!(text, "    missing: {}", missing.describe());
         }
     }
     let hint = if contents.lists_missing || all_seen == all { "" } else { "; --missing lists the others" };
@@ -206,7 +206,7 @@ fn of_contents(contents: &SuiteContents, style: Style) -> String {
 }
 
 /// Returns the known mistakes that no scene shows.
-fn of_mistakes(parts: &[SeenPart], style: Style) -> String {
+fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
     }

@@ -1,7 +1,7 @@
 //! `trace info`, `trace show`: what traces hold.
 use crate::{
     cli::{
-        arguments::{TraceInfo, TraceShow},
+        arguments::{TraceInfoArguments, TraceShowArguments},
         console, exit, input,
     },
     report::{
@@ -13,7 +13,7 @@ use crate::{
 use anyhow::{Result, bail};
 
 /// Prints the contents of a trace. Exit code 1 when it can't be read to its end.
-pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
+pub(super) fn info(arguments: &TraceInfoArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;
     let summary = Summary::for_scene(&scene.scene, &mut trace.reader);
@@ -24,7 +24,7 @@ pub(super) fn info(arguments: &TraceInfo) -> Result<u8> {
 }
 
 /// Shows one step of a trace.
-pub(super) fn show(arguments: &TraceShow) -> Result<()> {
+pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;
     let steps = scene.scene.steps();

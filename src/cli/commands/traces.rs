@@ -8,10 +8,12 @@ use super::{
     submissions::distinct_names,
 };
 use crate::{
-    cli::{console, grading::Grade as Arguments, input::unpacked, selection::Selection},
+    cli::{console, grading::GradeArguments as Arguments, input::unpacked, selection::Selection},
     files::{FileError, Folder},
     report::{foreign::one_line, number::counted},
-    suite::{EarlierGrade, Grade, SceneResult, SceneTask, cards::Judged, guarded, plan::Plan, result::Failure, traces},
+    suite::{
+        EarlierGrade, Grade, SceneResult, SceneTask, cards::JudgedTrace, guarded, plan::Plan, result::Failure, traces,
+    },
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -126,7 +128,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {
-        let judged = Judged {
+        let judged = JudgedTrace {
             scene: &task.scene,
             name: &task.name,
             explanations: &result.explanations,
@@ -137,7 +139,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
             rules: plan.rules,
             hints: plan.staff_hints,
         };
-        let draw = |judged: &Judged<'_>| pages::draw(judged, false);
+        let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, false);
         (result.card, result.card_for_students) = pages.drawing(&draw).keep(&judged, plan.student_hints(&task.name))?;
     }
     Ok((result, passed_over))

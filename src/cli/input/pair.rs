@@ -51,7 +51,7 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
 ///
 /// # Errors
 /// When the scene has no such pair, or detection never looks at it.
-pub(in crate::cli) fn of_scene(word: &str, scene: &Scene) -> Result<Pair> {
+pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
     let kind = kind_of(kind)?;
     let (first, second) = indices.split_once(',').context("two indices are needed, as in pe:3,1")?;

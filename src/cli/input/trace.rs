@@ -154,7 +154,7 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
     }
     if is_gzip(&start) {
         let decoder = flate2::read::MultiGzDecoder::new(Cursor::new(start).chain(reader));
-        return Ok(Box::new(Unpacked { decoder, format: "gzip", failure: failure.clone() }));
+        return Ok(Box::new(UnpackedReader { decoder, format: "gzip", failure: failure.clone() }));
     }
     if must {
         bail!("it is not zstd data although its name ends in .zst; rename it, or compress it with zstd");
@@ -184,18 +184,18 @@ fn decompressed(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -
     let packed = BufReader::with_capacity(1 << 16, Cursor::new(start.to_vec()).chain(reader));
     let mut decoder = zstd::stream::read::Decoder::with_buffer(packed)?;
     decoder.window_log_max(ZSTD_WINDOW)?;
-    Ok(Box::new(Unpacked { decoder, format: "zstd", failure: failure.clone() }))
+    Ok(Box::new(UnpackedReader { decoder, format: "zstd", failure: failure.clone() }))
 }
 
 /// A decoder whose errors say what is wrong with the file, and are remembered: a copy that was damaged on its way says
 /// nothing about the trace. Bytes behind the last zstd frame that do not begin another one are damage, too.
-struct Unpacked<R> {
+struct UnpackedReader<R> {
     decoder: R,
     format: &'static str,
     failure: Failure,
 }
 
-impl<R: Read> Read for Unpacked<R> {
+impl<R: Read> Read for UnpackedReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.decoder.read(buffer).map_err(|error| {
             // The operating system's words have been remembered already, and are the better explanation.

@@ -12,7 +12,7 @@ use super::{
 };
 use fosssim_oracle::{
     num::{
-        bounded::Bounded,
+        bounded::BoundedValue,
         decision::{Certainty, decide},
         polynomial::Polynomial,
         vector::{Vec2, length},
@@ -181,18 +181,18 @@ impl Observer for Doubt {
 }
 
 fn is_doubtful(polynomials: &[Polynomial]) -> bool {
-    let lists: Vec<Vec<Bounded>> = polynomials
+    let lists: Vec<Vec<BoundedValue>> = polynomials
         .iter()
         .map(|polynomial| {
             let greatest = polynomial.coefficients().iter().fold(0.0_f64, |most, c| most.max(c.abs()));
-            polynomial.coefficients().iter().map(|&value| Bounded { value, bound: greatest }).collect()
+            polynomial.coefficients().iter().map(|&value| BoundedValue { value, bound: greatest }).collect()
         })
         .collect();
-    let slices: Vec<&[Bounded]> = lists.iter().map(|list| &list[..]).collect();
+    let slices: Vec<&[BoundedValue]> = lists.iter().map(|list| &list[..]).collect();
     let certified = decide(&slices, 4096.0);
     // The time of a contact that hardly touches moves by the root of a rounding.
     let is_loose = certified.time.is_some_and(|[from, to]| to - from > 1e-9);
-    let is_alone = |list: &Vec<Bounded>| list.len() < 2 || list[1..].iter().all(|c| c.value == 0.0);
+    let is_alone = |list: &Vec<BoundedValue>| list.len() < 2 || list[1..].iter().all(|c| c.value == 0.0);
     certified.certainty == Certainty::Borderline
         || is_loose
         || certified.certainty == Certainty::Yes && lists.iter().any(is_alone)

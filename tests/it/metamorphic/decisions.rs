@@ -2,7 +2,7 @@
 use super::built_in;
 use fosssim_oracle::{
     num::{
-        bounded::Bounded,
+        bounded::BoundedValue,
         decision::{
             Certainty, decide,
             exact::{ExactAnswer, exact_first},
@@ -45,11 +45,13 @@ impl Observer for Tally {
             return;
         }
         let is_hit = matches!(detection.decision, Decision::Hit { .. });
-        let lists: Vec<Vec<Bounded>> = polynomials
+        let lists: Vec<Vec<BoundedValue>> = polynomials
             .iter()
-            .map(|polynomial| polynomial.coefficients().iter().map(|&c| Bounded { value: c, bound: c.abs() }).collect())
+            .map(|polynomial| {
+                polynomial.coefficients().iter().map(|&c| BoundedValue { value: c, bound: c.abs() }).collect()
+            })
             .collect();
-        let slices: Vec<&[Bounded]> = lists.iter().map(|list| &list[..]).collect();
+        let slices: Vec<&[BoundedValue]> = lists.iter().map(|list| &list[..]).collect();
         let certainty = decide(&slices, FAIR_UNITS).certainty;
         // Integers take long; what is near, what hits and a few others are enough.
         let number = self.same + self.borderline;

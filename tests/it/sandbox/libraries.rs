@@ -25,7 +25,7 @@ fn said(bench: &Bench, program: &Path) -> String {
     let job = bench.job(program, &[]).limits(roomy()).sanitizers(true);
     let outcome = bench.finish(&job);
     let words = text(&outcome.stdout.bytes).to_owned();
-    assert_eq!(outcome.ended, Ended::Exited(0), "{words}{}", String::from_utf8_lossy(&outcome.stderr.bytes));
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "{words}{}", String::from_utf8_lossy(&outcome.stderr.bytes));
     words
 }
 
@@ -226,7 +226,7 @@ fn waits_with_a_limit_of_time_last_until_it_and_end_when_they_should() {
     let Some(program) = built(&bench, WAITS, &["-pthread"]) else { return };
     for backend in [bench.backend.clone(), bench.backend.without(Layer::Namespaces).unwrap()] {
         let outcome = backend.start(&bench.job(&program, &[])).unwrap().wait().unwrap();
-        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (Ended::Exited(0), "1 0 1 0 1 1 1\n"));
+        assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (RunEnd::Exited(0), "1 0 1 0 1 1 1\n"));
     }
 }
 
@@ -255,7 +255,7 @@ fn a_program_reads_the_systems_libraries_and_nothing_else_of_the_system() {
         let read: Vec<&str> = text(&outcome.stdout.bytes).lines().collect();
         assert_eq!(
             (outcome.ended, read),
-            (Ended::Exited(0), library.iter().map(String::as_str).collect()),
+            (RunEnd::Exited(0), library.iter().map(String::as_str).collect()),
             "{words:?}"
         );
     }
@@ -310,6 +310,6 @@ fn build_steps_have_threads_jobs_and_the_compilers_folders() {
     let limits = Limits { wall: Duration::from_secs(120), open_files: 256, ..limits };
     let job = bench.job("/usr/bin/make", &["-j2"]).policy(Policy::Tools).limits(limits);
     let outcome = bench.finish(&job);
-    assert_eq!(outcome.ended, Ended::Exited(0), "{}", String::from_utf8_lossy(&outcome.stderr.bytes));
+    assert_eq!(outcome.ended, RunEnd::Exited(0), "{}", String::from_utf8_lossy(&outcome.stderr.bytes));
     assert!(bench.folder.path().join("program").exists());
 }

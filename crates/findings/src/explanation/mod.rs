@@ -95,13 +95,13 @@ impl Explanation {
     /// Returns the question whether a trace is of its scene; `has_length` says that at least the number of records is
     /// right.
     #[must_use]
-    pub fn of_other_scene(has_length: bool) -> Self {
+    pub fn for_other_scene(has_length: bool) -> Self {
         Self::about(Self::OTHER_SCENE, About::Scene { has_length })
     }
 
     /// Creates the explanation that these polynomials are wrong, without an exact form that holds in most traces.
     #[must_use]
-    pub fn of_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
+    pub fn for_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
         Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
     }
 

@@ -55,7 +55,7 @@ pub enum Event<'a> {
 
 /// The result of a grading.
 #[derive(Debug)]
-pub struct Graded {
+pub struct BatchResult {
     /// The grades, in the order of the submissions.
     pub grades: Vec<Grade>,
     /// A fault beside the grades.
@@ -81,7 +81,7 @@ pub fn run(
     results: Option<&dyn Results>,
     cancellation: &Cancellation,
     on_event: &mut dyn FnMut(Event<'_>),
-) -> Graded {
+) -> BatchResult {
     temporary::sweep();
     let shared = SharedGrading::new(grader, results, cancellation);
     let gradings: Vec<SubmissionGrading<'_>> =
@@ -98,7 +98,7 @@ pub fn run(
     // Once more: what killed graders had begun may have needed a moment to end.
     temporary::sweep();
     let fault = shared.full.into_inner().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
-    Graded { grades, fault }
+    BatchResult { grades, fault }
 }
 
 /// Jobs take scene after scene, and the one with a submission's last result draws its grade; this thread hears of them.

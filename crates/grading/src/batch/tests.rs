@@ -3,9 +3,9 @@ use crate::{
     cast::{SMALL_TRACE, Stage, right_trace, small_plan},
     disclosure::DisclosedFinding,
     grader::Options,
-    located::Failing,
+    located::FailureKind,
     plan::{self, Plan},
-    result::{Activity, BadTrace, Failure, NotRunReason, Reason, SavedTrace, SceneResult, Wrong},
+    result::{Activity, BadTrace, Failure, NotRunReason, Reason, SavedTrace, SceneResult, WrongTrace},
     results::FolderResults,
     verdict::Verdict,
 };
@@ -254,7 +254,10 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let crashed: Vec<_> = grade.scenes().filter(|scene| scene.verdict == Verdict::RuntimeError).collect();
     let others = grade.scenes().count() - crashed.len();
     assert_eq!((located.failed, located.with, located.without), (crashed.len(), crashed.len(), others), "{located:?}");
-    assert_eq!((located.failing, located.contents[0].family.as_ref()), (Failing::Crash, "the failsafe moves a zone"));
+    assert_eq!(
+        (located.failing, located.contents[0].family.as_ref()),
+        (FailureKind::Crash, "the failsafe moves a zone")
+    );
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
     assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
     let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
@@ -273,7 +276,7 @@ fn what_logs_nothing_is_not_written_yet() {
     let verdicts: Vec<_> = grades.iter().map(|grade| grade.verdict).collect();
     assert_eq!(verdicts, [Verdict::Unwritten, Verdict::NoOutput, Verdict::BadTrace], "of the one all scenes say so");
     assert_eq!((grades[0].points, grades[0].unfit().is_some()), (Some(0.0), true));
-    assert!(grades[0].scenes().all(|scene| scene.reason == Reason::Wrong(Wrong::Nothing)));
+    assert!(grades[0].scenes().all(|scene| scene.reason == Reason::Wrong(WrongTrace::Nothing)));
 }
 
 #[test]

@@ -57,7 +57,7 @@ impl Pairing {
 
     /// Returns both values in words: `fixed: the first, time: start of the step`.
     #[must_use]
-    pub fn words(self) -> String {
+    pub fn describe(self) -> String {
         let value = |(axis, value): (usize, usize)| {
             let axis = &FAMILIES[self.family].axes[axis];
             format!("{}: {}", axis.name, axis.values[value])

@@ -7,7 +7,7 @@ fn of(text: &str) -> Coverage {
 }
 
 fn has(coverage: &Coverage, one: &str, other: &str) -> bool {
-    let is = |pairing: &Pairing| pairing.words() == format!("{one}, {other}");
+    let is = |pairing: &Pairing| pairing.describe() == format!("{one}, {other}");
     assert!(Pairing::all().any(|pairing| is(&pairing)), "no such pair: {one}, {other}");
     Pairing::all().any(|pairing| is(&pairing) && coverage.has(pairing))
 }
@@ -40,7 +40,7 @@ fn nothing_is_seen_that_cannot_be() {
         let scene = read(name, library::scene(name).expect("a scene")).expect("sound").scene;
         let seen = Coverage::for_scene(&scene).expect("a run").seen;
         let wrong: Vec<String> =
-            seen.iter().filter(|one| !one.is_possible()).map(|one| format!("{name}: {}", one.words())).collect();
+            seen.iter().filter(|one| !one.is_possible()).map(|one| format!("{name}: {}", one.describe())).collect();
         assert!(wrong.is_empty(), "{wrong:#?}");
     }
 }

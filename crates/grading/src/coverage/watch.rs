@@ -20,7 +20,7 @@ use std::collections::BTreeSet;
 type WatchedContact = (Vec<usize>, [Happening; 2]);
 
 /// A zone as the last round had it.
-type Known = (Vec<usize>, bool);
+type EarlierZone = (Vec<usize>, bool);
 
 pub(super) struct Watch<'a> {
     scene: &'a Scene,
@@ -41,8 +41,8 @@ struct StepHeard {
     /// All contacts of the step's passes for zones.
     zone_contacts: BTreeSet<Pair>,
     /// The zones that are moved in this round, and those of the round before.
-    zones: Vec<Known>,
-    before: Vec<Known>,
+    zones: Vec<EarlierZone>,
+    before: Vec<EarlierZone>,
     rounds: u32,
 }
 
@@ -98,7 +98,7 @@ impl<'a> Watch<'a> {
 
     fn zone(&self, particles: &[usize], half_plane: bool) -> Vec<MovedZone> {
         let scene = self.scene;
-        let is_known = |zone: &&Known| zone.0.iter().any(|one| particles.contains(one));
+        let is_known = |zone: &&EarlierZone| zone.0.iter().any(|one| particles.contains(one));
         let age = match self.step.before.iter().find(is_known) {
             _ if self.step.rounds == 1 => Age::First,
             None => Age::New,

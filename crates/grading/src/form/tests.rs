@@ -5,8 +5,8 @@ use crate::{
     Key, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     result::{
-        Activity, BadTrace, Failure, FolderContents, Limit, Measurements, NotRunReason, Reached, Reason, SavedTrace,
-        Unusable, Wrong,
+        Activity, BadTrace, Failure, FolderContents, Limit, Measurements, NotRunReason, ProgramProgress, Reason,
+        SavedTrace, UnusableReason, WrongTrace,
     },
 };
 use fosssim_findings::FindingPlace;
@@ -19,7 +19,7 @@ use fosssim_model::{
     trace::{List, LoggedImpulse, Malformation},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
-use fosssim_sandbox::{Ended, StartProblem};
+use fosssim_sandbox::{RunEnd, StartProblem};
 use std::{path::PathBuf, time::Duration};
 
 fn key() -> Key {
@@ -122,9 +122,9 @@ fn wrong() -> SceneResult {
     let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
     let damage =
         Damage { frame: 1, step: 2, offset: 3, what: Malformation::CountCut { list: List::Impulses, left: 3 } };
-    let why = Reason::Wrong(Wrong::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
+    let why = Reason::Wrong(WrongTrace::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
     SceneResult {
-        ended: Some(Ended::Exited(0)),
+        ended: Some(RunEnd::Exited(0)),
         differs: Some(Cause::ContactTime),
         disclosure: Some(Disclosure {
             official: Book::Fair,
@@ -184,17 +184,22 @@ fn every_reason_and_every_end_reads_back() {
     let mut reasons: Vec<Reason> = vec![
         Reason::Right,
         Reason::NoTrace,
-        Reason::Program(Reached { limit: None, steps: 7 }),
-        Reason::Program(Reached { limit: Some(Limit::Time(Duration::from_millis(1500))), steps: 3 }),
-        Reason::Program(Reached { limit: Some(Limit::Memory(1 << 30)), steps: 0 }),
+        Reason::Program(ProgramProgress { limit: None, steps: 7 }),
+        Reason::Program(ProgramProgress { limit: Some(Limit::Time(Duration::from_millis(1500))), steps: 3 }),
+        Reason::Program(ProgramProgress { limit: Some(Limit::Memory(1 << 30)), steps: 0 }),
         Reason::Stopped,
         Reason::DoesNotBuild,
     ];
-    let wrong =
-        [Wrong::Untold, Wrong::Nothing, Wrong::FirstRecord(FindingKind::Position), Wrong::Damaged, Wrong::SmallErrors];
+    let wrong = [
+        WrongTrace::Untold,
+        WrongTrace::Nothing,
+        WrongTrace::FirstRecord(FindingKind::Position),
+        WrongTrace::Damaged,
+        WrongTrace::SmallErrors,
+    ];
     reasons.extend(wrong.map(Reason::Wrong));
-    reasons.extend([Wrong::Borderline, Wrong::Undecided].map(Reason::Wrong));
-    reasons.extend(errors.map(|error| Reason::Wrong(Wrong::NoResult(error))));
+    reasons.extend([WrongTrace::Borderline, WrongTrace::Undecided].map(Reason::Wrong));
+    reasons.extend(errors.map(|error| Reason::Wrong(WrongTrace::NoResult(error))));
     reasons.extend(causes.map(|cause| Reason::Trace(unreadable(cause))));
     reasons.extend([BadTrace::StatesOnly, BadTrace::Damaged, BadTrace::TrailingBytes].map(Reason::Trace));
     let total = NotRunReason::Total(Duration::from_secs(600));
@@ -204,10 +209,10 @@ fn every_reason_and_every_end_reads_back() {
     );
     let missing = StartProblem::MissingInterpreter { interpreter: "/bin/x".to_owned(), hint: "; install it".into() };
     for found in [FolderContents::Unreadable("no".to_owned()), FolderContents::Nothing, others] {
-        reasons.push(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
+        reasons.push(Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found }));
     }
-    reasons.push(Reason::Unusable(Unusable::CouldNotStart(missing.clone())));
-    reasons.push(Reason::Unusable(Unusable::Unreadable("closed".to_owned())));
+    reasons.push(Reason::Unusable(UnusableReason::CouldNotStart(missing.clone())));
+    reasons.push(Reason::Unusable(UnusableReason::Unreadable("closed".to_owned())));
     reasons.push(Reason::Failed(Failure::Machine("no space".to_owned())));
     let kept = SavedTrace::In(PathBuf::from("faults/a.bin"));
     let lost = SavedTrace::Lost { folder: PathBuf::from("faults"), error: "full".to_owned() };
@@ -224,13 +229,13 @@ fn every_reason_and_every_end_reads_back() {
         assert_eq!(again(&result), result);
     }
     for ended in [
-        Ended::Exited(-1),
-        Ended::Signalled(11),
-        Ended::CpuLimit,
-        Ended::TraceLimit,
-        Ended::Violation { call: "ptrace".to_owned() },
-        Ended::CouldNotStart(missing),
-        Ended::Cancelled,
+        RunEnd::Exited(-1),
+        RunEnd::Signalled(11),
+        RunEnd::CpuLimit,
+        RunEnd::TraceLimit,
+        RunEnd::Violation { call: "ptrace".to_owned() },
+        RunEnd::CouldNotStart(missing),
+        RunEnd::Cancelled,
     ] {
         let result = SceneResult {
             ended: Some(ended),

@@ -1,7 +1,7 @@
 use super::*;
 use crate::{
-    batch::{Event, GradeFault, Graded, run},
-    cards::Judged,
+    batch::{BatchResult, Event, GradeFault, run},
+    cards::JudgedTrace,
     cast::{Stage, small_plan},
     grade::Grade,
     result::Measurements,
@@ -45,11 +45,12 @@ fn grade(
 ) -> (Grade, Option<GradeFault>, Vec<String>) {
     let mut told = Vec::new();
     let submission = std::slice::from_ref(submission);
-    let Graded { grades, fault } = run(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
-        if let Event::SceneDone { submission: 0, scene, cached } = event {
-            told.push(format!("{scene} {cached}"));
-        }
-    });
+    let BatchResult { grades, fault } =
+        run(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
+            if let Event::SceneDone { submission: 0, scene, cached } = event {
+                told.push(format!("{scene} {cached}"));
+            }
+        });
     (grades.into_iter().next().expect("a grade"), fault, told)
 }
 
@@ -114,7 +115,7 @@ fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
     let troubled = plan.scenes().nth(2).expect("a scene").name.clone();
     let submission = stage.submissions(&["wrong"]).remove(0);
     let memory = MemoryResults::default();
-    let draw = |judged: &Judged<'_>| {
+    let draw = |judged: &JudgedTrace<'_>| {
         assert!(judged.name != troubled, "no picture of this");
         None
     };

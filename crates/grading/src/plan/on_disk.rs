@@ -1,5 +1,5 @@
 //! Suites and scenes that are files.
-use super::{Found, Plan, built_in, built_in_names, load_by};
+use super::{MatchingScenes, Plan, built_in, built_in_names, load_by};
 use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_model::scene;
@@ -80,11 +80,11 @@ struct FileBudget {
     bytes: u64,
 }
 
-fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Found, String> {
+fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<MatchingScenes, String> {
     let path = folder.join(pattern);
     let text = path.to_str().ok_or_else(|| format!("{}: the folder's name is not UTF-8", folder.display()))?;
     let paths = glob::glob(text).map_err(|error| format!("pattern {pattern}: {error}"))?;
-    let mut found = Found::new();
+    let mut found = MatchingScenes::new();
     for path in paths {
         let path = path.map_err(|error| format!("{}: {}", error.path().display(), error.error()))?;
         let relative = path.strip_prefix(folder).unwrap_or(&path);

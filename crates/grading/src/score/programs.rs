@@ -3,10 +3,10 @@ use crate::{
     config::Visibility,
     grade::Grade,
     grader::{SubmissionGrading, lock},
-    located::{Contents, Failing, LocatedFailure, TriedScene, locate},
+    located::{Contents, FailureKind, LocatedFailure, TriedScene, locate},
     milestone, one_file, patience,
     plan::PlannedGroup,
-    result::{Ended, Reason, SceneResult},
+    result::{Reason, RunEnd, SceneResult},
     score,
     verdict::Verdict,
 };
@@ -82,7 +82,7 @@ impl SubmissionGrading<'_> {
 /// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,
 /// computed only where some fail and some do not.
 fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
-    let failing = |ended: &Option<Ended>| ended.as_ref().and_then(Failing::from_end);
+    let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
     let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
     let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();

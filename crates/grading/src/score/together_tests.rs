@@ -12,7 +12,7 @@ use fosssim_findings::{
 use fosssim_mistakes::together::{likely_mistakes, settle};
 use std::time::Duration;
 
-fn told(key: &str, about: About, reproduced: u64) -> Explanation {
+fn explanation(key: &str, about: About, reproduced: u64) -> Explanation {
     Explanation {
         key: key.to_owned(),
         about,
@@ -69,14 +69,15 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
 #[test]
 fn each_scene_says_what_all_together_say() {
     let end = |step, stage| {
-        told(
+        explanation(
             Explanation::NOT_FINITE,
             About::NotFinite(NotFinite { step: Some(step), stage, is_nan: true, ends: false }),
             0,
         )
     };
-    let short = told("loop-one-fewer", About::Mistake, 4);
-    let empty = Explanation { same_as: vec!["loop-one-fewer".to_owned()], ..told("loop-empty", About::Mistake, 2) };
+    let short = explanation("loop-one-fewer", About::Mistake, 4);
+    let empty =
+        Explanation { same_as: vec!["loop-one-fewer".to_owned()], ..explanation("loop-empty", About::Mistake, 2) };
     let grade = grade(vec![
         vec![empty],
         vec![end(7, NanStage::Zones), short.clone()],
@@ -104,13 +105,13 @@ fn each_scene_says_what_all_together_say() {
 #[test]
 fn where_numbers_end_comes_last() {
     let end = || {
-        told(
+        explanation(
             Explanation::NOT_FINITE,
             About::NotFinite(NotFinite { step: Some(7), stage: NanStage::Zones, is_nan: true, ends: false }),
             0,
         )
     };
-    let short = |reproduced| Explanation { samples: 4, ..told("loop-one-fewer", About::Mistake, reproduced) };
+    let short = |reproduced| Explanation { samples: 4, ..explanation("loop-one-fewer", About::Mistake, reproduced) };
     let first = |scenes| likely_mistakes(&grade(scenes)).into_iter().next().map(|(one, _)| one.key).expect("a head");
     assert_eq!(first(vec![vec![end()], vec![end()]]), Explanation::NOT_FINITE);
     assert_eq!(first(vec![vec![end()], vec![end()], vec![short(4)]]), "loop-one-fewer");

@@ -1,7 +1,7 @@
 //! Whether a logged polynomial is the expected one up to a positive factor and round-off (numerics.md 2).
 use super::formulas::BoundedCoefficients;
 use fosssim_num::{
-    bounded::{Bounded, UNIT_ROUNDOFF},
+    bounded::{BoundedValue, UNIT_ROUNDOFF},
     polynomial::MAX_COEFFICIENTS,
     tolerances::{FAIR_CLEAR, FAIR_LOSS, FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
 };
@@ -43,7 +43,7 @@ pub enum Mismatch {
 /// programs divide polynomials by their size. Where the expected one has no number, because the trace's own state has
 /// lost them, the logged one has none either.
 #[inline]
-pub fn compare(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
+pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match is_clear(expected, actual).or_else(|| fits(expected, actual)) {
         Some(found) => Ok(found),
         None => compare_closely(expected, actual, hints),
@@ -80,24 +80,24 @@ impl Similarity {
     pub fn measure(own: &[f64], logged: &[f64]) -> Self {
         // Loops of a known length are unrolled.
         match own.len() {
-            2 => Self::of_length::<2>(own, logged),
-            3 => Self::of_length::<3>(own, logged),
-            5 => Self::of_length::<5>(own, logged),
-            6 => Self::of_length::<6>(own, logged),
-            _ => Self::of_lists(own, logged),
+            2 => Self::compare_lists::<2>(own, logged),
+            3 => Self::compare_lists::<3>(own, logged),
+            5 => Self::compare_lists::<5>(own, logged),
+            6 => Self::compare_lists::<6>(own, logged),
+            _ => Self::from_lists(own, logged),
         }
     }
 
     #[inline(always)]
-    fn of_length<const LENGTH: usize>(own: &[f64], logged: &[f64]) -> Self {
+    fn compare_lists<const LENGTH: usize>(own: &[f64], logged: &[f64]) -> Self {
         match (own.first_chunk::<LENGTH>(), logged.first_chunk::<LENGTH>()) {
-            (Some(own), Some(logged)) => Self::of_lists(own, logged),
+            (Some(own), Some(logged)) => Self::from_lists(own, logged),
             _ => Self::NONE,
         }
     }
 
     #[inline(always)]
-    fn of_lists(own: &[f64], theirs: &[f64]) -> Self {
+    fn from_lists(own: &[f64], theirs: &[f64]) -> Self {
         let (mut sum, mut logged) = (0.0, 0.0);
         for (own, theirs) in own.iter().zip(theirs) {
             sum += own.abs();
@@ -134,7 +134,7 @@ impl Similarity {
 
 /// Compares as [`compare`] does, where bounds need not be asked how far the coefficients may be off; `None` leaves it
 /// open.
-fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
+fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
     if kept.len() != actual.len() {
@@ -157,7 +157,7 @@ fn is_clear(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
 /// step: it is off by less than `WIDEST` units of all bounds together. For the tolerances of six coefficients are at
 /// most 2 `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead
 /// have less. So each time allows an interval of factors, and where two of these have nothing in common there is none.
-pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
+pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// Tolerances, and the rounding of values here.
     const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
     let Some(missing) = expected.len().checked_sub(actual.len()).filter(|_| expected.len() <= MAX_COEFFICIENTS) else {
@@ -189,7 +189,7 @@ pub fn fits_with_no_factor(expected: &[Bounded], actual: &[f64]) -> bool {
 /// Compares as [`compare`] does, where the logged polynomial is complete and right with the factor that fits best, as
 /// nearly all are; `None` leaves it open. The factor is found once, and all coefficients are compared with it at once,
 /// by the same operations.
-fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
+fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
     }
@@ -215,12 +215,12 @@ fn fits(expected: &[Bounded], actual: &[f64]) -> Option<Match> {
 }
 
 /// Compares as [`compare`] does, whatever it is.
-fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
+fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     let degree = expected.len().max(actual.len()).max(1) - 1;
     if actual.len() > MAX_COEFFICIENTS {
         return Err(Mismatch::TooLong);
     }
-    let mut right: BoundedCoefficients = [Bounded::default(); MAX_COEFFICIENTS];
+    let mut right: BoundedCoefficients = [BoundedValue::default(); MAX_COEFFICIENTS];
     let mut logged = [0.0; MAX_COEFFICIENTS];
     right[MAX_COEFFICIENTS - expected.len()..].copy_from_slice(expected);
     logged[MAX_COEFFICIENTS - actual.len()..].copy_from_slice(actual);
@@ -270,7 +270,7 @@ fn compare_closely(expected: &[Bounded], actual: &[f64], hints: &[f64]) -> Resul
 }
 
 /// Compares a logged polynomial that has the factor 1: the mismatch, if there is one.
-pub(super) fn compare_with_one(expected: &[Bounded], actual: &[f64]) -> Result<(), Mismatch> {
+pub(super) fn compare_with_one(expected: &[BoundedValue], actual: &[f64]) -> Result<(), Mismatch> {
     let Some(missing) = expected.len().checked_sub(actual.len()) else { return Err(Mismatch::TooLong) };
     let mut logged = [0.0; MAX_COEFFICIENTS];
     logged[missing..expected.len()].copy_from_slice(actual);
@@ -278,7 +278,11 @@ pub(super) fn compare_with_one(expected: &[Bounded], actual: &[f64]) -> Result<(
 }
 
 /// Checks that numbers are exactly where they should be.
-fn check_numbers_where(should: fn(&Bounded) -> bool, right: &[Bounded], logged: &[f64]) -> Result<Match, Mismatch> {
+fn check_numbers_where(
+    should: fn(&BoundedValue) -> bool,
+    right: &[BoundedValue],
+    logged: &[f64],
+) -> Result<Match, Mismatch> {
     let wrong = right.iter().zip(logged).position(|(r, s)| should(r) != s.is_finite());
     let Some(k) = wrong else { return Ok(Match { scale: None, share: 0.0 }) };
     let (expected, actual) = (right[k].value, logged[k]);
@@ -286,23 +290,23 @@ fn check_numbers_where(should: fn(&Bounded) -> bool, right: &[Bounded], logged: 
 }
 
 /// Returns whether a polynomial is zero on the whole step but for round-off.
-pub fn says_nothing(expected: &[Bounded]) -> bool {
+pub fn says_nothing(expected: &[BoundedValue]) -> bool {
     sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * norm(expected) || !expected.iter().any(is_significant)
 }
 
 /// Returns the sum of all values' moduli.
-fn sum_of_moduli(expected: &[Bounded]) -> f64 {
+fn sum_of_moduli(expected: &[BoundedValue]) -> f64 {
     expected.iter().map(|r| r.value.abs()).sum()
 }
 
 /// Returns whether a coefficient holds more than round-off.
-fn is_significant(r: &Bounded) -> bool {
+fn is_significant(r: &BoundedValue) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
 
 /// Returns the factor that fits best, each coefficient weighted by its precision; `None` where all are round-off. Not
 /// positive, not finite: the polynomial is wrong.
-fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
+fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = norm(right);
     let (mut products, mut squares) = (0.0, 0.0);
     for (r, s) in right.iter().zip(logged).skip(missing) {
@@ -318,13 +322,13 @@ fn fit(right: &[Bounded], logged: &[f64], missing: usize) -> Option<f64> {
 /// Returns how far a coefficient may be off, in units of the roundoff. Both sides round. A coefficient that is small
 /// beside the others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision
 /// can tell.
-fn units(r: &Bounded, norm: f64) -> f64 {
+fn units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
 
 /// Returns the used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive fails
 /// always.
-fn check(r: &Bounded, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
+fn check(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
     if !(scale > 0.0) {
         return Err(f64::NAN);
     }
@@ -341,14 +345,14 @@ fn check(r: &Bounded, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result
 }
 
 /// Returns the sum of all bounds.
-fn norm(right: &[Bounded]) -> f64 {
+fn norm(right: &[BoundedValue]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
 /// Returns the factors with which a logged polynomial would be right although it does not tell its own: at least so
 /// large that what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it
 /// tells, or if there is no such factor.
-pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]> {
+pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
     if held.iter().any(is_significant) {
@@ -364,13 +368,13 @@ pub fn possible_factors(expected: &[Bounded], actual: &[f64]) -> Option<[f64; 2]
 const UNIT: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
 /// Returns the greatest factor with which the course's library drops all of these.
-fn most_factor(dropped: &[Bounded]) -> f64 {
+fn most_factor(dropped: &[BoundedValue]) -> f64 {
     LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
 }
 
 /// Returns whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has
 /// to vouch for it.
-pub fn shows_factor(expected: &[Bounded], actual: &[f64]) -> bool {
+pub fn shows_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     let missing = expected.len().saturating_sub(actual.len());
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
@@ -378,7 +382,7 @@ pub fn shows_factor(expected: &[Bounded], actual: &[f64]) -> bool {
 /// Returns the factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size,
 /// and lacks others that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks
 /// nothing.
-pub fn claimed_factors(expected: &[Bounded], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
+pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
     if most_factor(dropped) >= 1.0 || shows_factor(expected, actual) {
@@ -390,14 +394,14 @@ pub fn claimed_factors(expected: &[Bounded], actual: &[f64], scale: f64) -> Opti
 }
 
 /// Returns how many coefficients are wrong with this factor.
-fn wrong(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> usize {
+fn wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
     let norm = norm(right);
     let all = right.iter().zip(logged).enumerate();
     all.filter(|&(k, (r, &s))| check(r, s, norm, k < missing, scale).is_err()).count()
 }
 
 /// Returns the largest used share with this factor, or the first wrong coefficient.
-fn judge(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
+fn judge(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
     let norm = norm(right);
     let mut share = 0.0_f64;
     for (k, (r, &s)) in right.iter().zip(logged).enumerate() {
@@ -418,7 +422,7 @@ fn judge(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Resul
 /// Returns the largest used share of the tolerance of the polynomial's *values* within the step, if they are all right.
 /// A program that interpolates from values within the step has their round-off many times over in the higher
 /// coefficients, where they cancel.
-fn share_within_step(right: &[Bounded], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
+fn share_within_step(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
     /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
     const TIMES: u8 = 16;
     let norm = norm(right);

@@ -1,7 +1,7 @@
 //! Contacts and states: how far they may be off, and which decisions hang on round-off.
 use super::{
     context::{Context, Records},
-    formulas::{BoundedPairMotion, Expected},
+    formulas::{BoundedPairMotion, ExpectedPolynomials},
     ordinary::largest,
     step_judgement::StepJudgement,
 };
@@ -12,7 +12,7 @@ use fosssim_model::{
     trace::LoggedImpulse,
 };
 use fosssim_num::{
-    bounded::{Bounded, UNIT_ROUNDOFF},
+    bounded::{BoundedValue, UNIT_ROUNDOFF},
     certificate::excludes_unit_interval,
     decision::{Certainty, decide},
     first_time::first_time,
@@ -27,7 +27,7 @@ use fosssim_num::{
 fosssim_model::drops_leading!();
 
 /// Returns a polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
-fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
+fn value(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let (mut value, mut bound) = (0.0, 0.0);
     for c in polynomial {
         value = value * t + c.value;
@@ -38,7 +38,7 @@ fn value(polynomial: &[Bounded], t: f64) -> (f64, f64) {
 
 /// Returns the value as [`value`] does, but leading coefficients that the course's library drops, with a factor near 1,
 /// may be missing.
-fn value_without_losses(polynomial: &[Bounded], t: f64) -> (f64, f64) {
+fn value_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS * LEADING_COEFFICIENT).sum();
     let (value, tolerance) = value(polynomial, t);
@@ -46,11 +46,11 @@ fn value_without_losses(polynomial: &[Bounded], t: f64) -> (f64, f64) {
 }
 
 /// A polynomial's value at a time, and the tolerance of that value.
-type Value = fn(&[Bounded], f64) -> (f64, f64);
+type Value = fn(&[BoundedValue], f64) -> (f64, f64);
 
 /// Returns whether a pair may come into contact at time `t`: one polynomial is about to turn positive, and none is
 /// negative.
-fn is_possible(expected: &Expected, t: f64, value: Value) -> bool {
+fn is_possible(expected: &ExpectedPolynomials, t: f64, value: Value) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;
     }
@@ -61,7 +61,7 @@ fn is_possible(expected: &Expected, t: f64, value: Value) -> bool {
 
 /// Returns whether a pair may be in contact at time `t` first: it may be so at all, and the polynomials were not all
 /// positive between `t` and the reference's time.
-fn time_fits(expected: &Expected, own: f64, t: f64, value: Value) -> bool {
+fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> bool {
     // Between the two times nothing may be decided: else one of them is not the first.
     let undecided = || {
         [0.25, 0.5, 0.75].into_iter().all(|part| {
@@ -78,7 +78,7 @@ fn time_fits(expected: &Expected, own: f64, t: f64, value: Value) -> bool {
 
 /// Returns whether a time of impact is that of the reference, whose polynomials may have lost coefficients themselves,
 /// or one of the polynomials without losses.
-pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> bool {
+pub(super) fn is_time_without_losses(expected: &ExpectedPolynomials, own: f64, t: f64) -> bool {
     let is_near = (own - t).abs() <= FAIR_TIME;
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
 }
@@ -86,7 +86,7 @@ pub(super) fn is_time_without_losses(expected: &Expected, own: f64, t: f64) -> b
 /// Compares a logged contact with the reference's, of a step from this state.
 pub(super) fn hit(
     before: &State,
-    known: Option<&(BoundedPairMotion, Expected)>,
+    known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
     own: Impulse,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
@@ -108,7 +108,7 @@ pub(super) fn hit(
 pub(super) fn possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
-    known: Option<&(BoundedPairMotion, Expected)>,
+    known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
     pair: Pair,
     actual: &LoggedImpulse,
     judged: &mut StepJudgement,
@@ -279,7 +279,7 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
 ///
 /// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
 /// to excuse anything: touching at the very end of the step is then as certain as anything else.
-pub fn decides(motion: &BoundedPairMotion, expected: &Expected) -> Option<bool> {
+pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Option<bool> {
     let polynomials = expected.polynomials();
     if !polynomials.iter().copied().flatten().all(|c| is_ordinary(c.value)) {
         // Among numbers of such sizes nobody promises anything, and certainty would take long.
@@ -297,12 +297,12 @@ pub fn decides(motion: &BoundedPairMotion, expected: &Expected) -> Option<bool> 
 const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may flip the decision.
-pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &Expected) -> bool {
+pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> bool {
     decides(motion, expected).is_none()
 }
 
 /// Returns a time of impact for a pair that may collide or not.
-pub(super) fn possible_time(expected: &Expected) -> f64 {
+pub(super) fn possible_time(expected: &ExpectedPolynomials) -> f64 {
     let earliest = decide(&expected.polynomials()[..expected.count()], FAIR_UNITS).time;
     earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))
 }

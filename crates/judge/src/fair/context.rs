@@ -1,5 +1,5 @@
 //! The facts by which a step is judged: the scene, and the trace's records.
-use super::ordinary::Ordinary;
+use super::ordinary::OrdinaryRange;
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{ByKind, Decision, Pair, PairKind, Pass, State, pairs},
@@ -20,7 +20,7 @@ pub(crate) struct Context<'a> {
     /// Records of one step.
     pub records_per_step: u32,
     /// States that need no look at the reference's own run.
-    pub ordinary: Ordinary,
+    pub ordinary: OrdinaryRange,
     /// Whether bounds are asked about every polynomial, also about those that are right at once.
     pub looks_closely: bool,
 }
@@ -39,7 +39,7 @@ impl<'a> Context<'a> {
             pairs,
             of_kinds,
             records_per_step,
-            ordinary: Ordinary::for_scene(scene),
+            ordinary: OrdinaryRange::for_scene(scene),
             looks_closely: false,
         }
     }

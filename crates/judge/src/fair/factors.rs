@@ -96,7 +96,7 @@ fn power_of_two(power: f64) -> f64 {
 mod tests {
     use super::*;
 
-    fn of(factors: impl IntoIterator<Item = f64>) -> Factors {
+    fn factors_from(factors: impl IntoIterator<Item = f64>) -> Factors {
         let mut all = Factors::default();
         factors.into_iter().for_each(|factor| all.take(factor));
         all
@@ -104,7 +104,8 @@ mod tests {
 
     #[test]
     fn one_among_dozens_vouches_for_nothing() {
-        let with = |others: usize| of(std::iter::repeat_n(1.0, others).chain([1e-13])).usual().expect("factors");
+        let with =
+            |others: usize| factors_from(std::iter::repeat_n(1.0, others).chain([1e-13])).usual().expect("factors");
         assert_eq!(with(5), [1e-13, 1.0]);
         let [least, greatest] = with(30);
         assert!(least > 1e-9 && greatest == 1.0, "{least}");
@@ -112,21 +113,21 @@ mod tests {
 
     #[test]
     fn what_many_tell_is_usual() {
-        assert_eq!(of([3.0, 3.0, 3.0]).usual(), Some([3.0; 2]));
-        assert_eq!(of((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual(), Some([1e-6, 2.0]));
+        assert_eq!(factors_from([3.0, 3.0, 3.0]).usual(), Some([3.0; 2]));
+        assert_eq!(factors_from((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual(), Some([1e-6, 2.0]));
         // Divided by their sizes.
-        let sizes = of((1..500).map(|n| 1.0 / f64::from(n)));
+        let sizes = factors_from((1..500).map(|n| 1.0 / f64::from(n)));
         assert_eq!(sizes.usual().map(|[least, _]| least), Some(1.0 / 499.0));
         for factor in [5e-324, 1e-300, 1.0, 1e300, f64::MAX] {
-            assert_eq!(of([factor; 9]).usual(), Some([factor; 2]));
+            assert_eq!(factors_from([factor; 9]).usual(), Some([factor; 2]));
         }
         assert_eq!(Factors::default().usual(), None);
     }
 
     #[test]
     fn two_steps_tell_what_one_tells() {
-        let (mut one, all) = (of([1.0, 5.0]), of([1.0, 5.0, 0.25, 1e-7]));
-        one.add(&of([0.25, 1e-7]));
+        let (mut one, all) = (factors_from([1.0, 5.0]), factors_from([1.0, 5.0, 0.25, 1e-7]));
+        one.add(&factors_from([0.25, 1e-7]));
         one.add(&Factors::default());
         assert_eq!(one, all);
     }

@@ -11,7 +11,7 @@ use fosssim_model::{
     },
 };
 use fosssim_num::{
-    bounded::{Bounded, Bounded2, UNIT_ROUNDOFF},
+    bounded::{BoundedValue, BoundedVector, UNIT_ROUNDOFF},
     decision::all_exact,
     polynomial::MAX_COEFFICIENTS,
     tolerances::{FAIR_MOMENT, FAIR_SENSITIVITY, FAIR_UNITS},
@@ -22,9 +22,9 @@ use fosssim_num::{
 #[derive(Debug, Clone, Copy)]
 pub struct BoundedPointMotion {
     /// Position at the start of the step.
-    pub start: Bounded2,
+    pub start: BoundedVector,
     /// Displacement in the step.
-    pub shift: Bounded2,
+    pub shift: BoundedVector,
 }
 
 impl BoundedPointMotion {
@@ -32,7 +32,7 @@ impl BoundedPointMotion {
     /// axes of its own, turned or shifted. Nothing is off if it rests for certain.
     fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
         let start_place = within(start, size);
-        let shift = if rests { Bounded2::default() } else { within(end, size) - start_place };
+        let shift = if rests { BoundedVector::default() } else { within(end, size) - start_place };
         Self { start: start_place, shift }
     }
 }
@@ -41,39 +41,39 @@ impl BoundedPointMotion {
 #[derive(Debug, Clone, Copy)]
 pub enum BoundedPairMotion {
     /// Two discs; the sum of radii.
-    Particles([BoundedPointMotion; 2], Bounded),
+    Particles([BoundedPointMotion; 2], BoundedValue),
     /// A disc and an edge's endpoints; the sum of radii.
-    Edge([BoundedPointMotion; 3], Bounded),
+    Edge([BoundedPointMotion; 3], BoundedValue),
     /// A disc and a half-plane: the way, the radius, the point and the normal as written.
-    HalfPlane(BoundedPointMotion, Bounded, Vec2, Vec2),
+    HalfPlane(BoundedPointMotion, BoundedValue, Vec2, Vec2),
 }
 
 /// A polynomial, highest power first, nothing dropped.
-pub type BoundedCoefficients = [Bounded; MAX_COEFFICIENTS];
+pub type BoundedCoefficients = [BoundedValue; MAX_COEFFICIENTS];
 
 /// The polynomials of a pair; each uses the last `sizes()` entries.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Expected {
+pub struct ExpectedPolynomials {
     polynomials: [BoundedCoefficients; 4],
     sizes: [usize; 4],
     /// Particle-edge: the approach polynomial without the slip of the course's formula (numerics.md 1.1).
     right_approach: Option<BoundedCoefficients>,
 }
 
-impl Expected {
+impl ExpectedPolynomials {
     /// Returns polynomial `number` of the pair.
-    pub fn polynomial(&self, number: usize) -> &[Bounded] {
+    pub fn polynomial(&self, number: usize) -> &[BoundedValue] {
         &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
     }
 
     /// Returns all polynomials; those beyond their number are empty.
-    pub fn polynomials(&self) -> [&[Bounded]; 4] {
+    pub fn polynomials(&self) -> [&[BoundedValue]; 4] {
         std::array::from_fn(|number| self.polynomial(number))
     }
 
     /// Returns the other accepted form of polynomial `number`: the mathematically right approach of a particle and an
     /// edge.
-    pub fn other_form(&self, number: usize) -> Option<&[Bounded]> {
+    pub fn other_form(&self, number: usize) -> Option<&[BoundedValue]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }
 
@@ -90,7 +90,7 @@ impl Expected {
         self.sizes.iter().filter(|&&size| size > 0).count()
     }
 
-    fn set(&mut self, number: usize, coefficients: &[Bounded]) {
+    fn set(&mut self, number: usize, coefficients: &[BoundedValue]) {
         self.polynomials[number][MAX_COEFFICIENTS - coefficients.len()..].copy_from_slice(coefficients);
         self.sizes[number] = coefficients.len();
     }
@@ -109,7 +109,7 @@ impl BoundedPairMotion {
             let [start, end] = places(particle);
             BoundedPointMotion::between([start, end], size, scene.particles[particle].fixed && start == end)
         };
-        let radius = |particle: usize| Bounded::exact(scene.particles[particle].radius);
+        let radius = |particle: usize| BoundedValue::exact(scene.particles[particle].radius);
         match pair.kind {
             PairKind::ParticleParticle => {
                 let size = size(&[first, second]);
@@ -119,7 +119,10 @@ impl BoundedPairMotion {
                 let edge = &scene.edges[second];
                 let particles = [first, edge.first, edge.second];
                 let size = size(&particles);
-                Self::Edge(particles.map(|particle| way(particle, size)), radius(first) + Bounded::exact(edge.radius))
+                Self::Edge(
+                    particles.map(|particle| way(particle, size)),
+                    radius(first) + BoundedValue::exact(edge.radius),
+                )
             }
             PairKind::ParticleHalfPlane => {
                 let half_plane = &scene.half_planes[second];
@@ -156,7 +159,7 @@ impl BoundedPairMotion {
     /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power
     /// of two, by less than two to the `bits`. A particle and an edge have higher degrees, whose zeros are never exact.
     pub fn is_exact(&self, bits: u32) -> bool {
-        let parts = |v: Bounded2| [v.x.value, v.y.value];
+        let parts = |v: BoundedVector| [v.x.value, v.y.value];
         match self {
             Self::Particles([one, two], radii) => {
                 let [a, b, c, d] = [one.start, one.shift, two.start, two.shift].map(parts);
@@ -171,8 +174,8 @@ impl BoundedPairMotion {
     }
 
     /// Returns the detection polynomials.
-    pub fn polynomials(&self) -> Expected {
-        let mut expected = Expected::default();
+    pub fn polynomials(&self) -> ExpectedPolynomials {
+        let mut expected = ExpectedPolynomials::default();
         match *self {
             Self::Particles([one, two], radii) => {
                 let (overlap, approach) = particle_particle(one.start, one.shift, two.start, two.shift, radii);
@@ -221,7 +224,7 @@ impl BoundedPairMotion {
     /// round-off.
     pub fn to_nearest(&self, t: f64) -> Vec2 {
         let place = |way: &BoundedPointMotion| {
-            let place = way.start + Bounded::exact(t) * way.shift;
+            let place = way.start + BoundedValue::exact(t) * way.shift;
             Vec2::new(place.x.value, place.y.value)
         };
         let Self::Edge(ways, _) = self else {
@@ -234,8 +237,8 @@ impl BoundedPairMotion {
     }
 
     /// Returns the contact normal at time `t`, not normalized.
-    pub fn normal(&self, t: f64) -> Bounded2 {
-        let t = Bounded::exact(t);
+    pub fn normal(&self, t: f64) -> BoundedVector {
+        let t = BoundedValue::exact(t);
         let place = |way: &BoundedPointMotion| way.start + t * way.shift;
         match self {
             Self::Particles([one, two], _) => place(two) - place(one),
@@ -254,13 +257,13 @@ impl BoundedPairMotion {
 }
 
 /// Returns a vector whose components may each be off by a rounding of this size.
-fn within(v: Vec2, size: f64) -> Bounded2 {
-    let component = |value| Bounded { value, bound: size };
-    Bounded2 { x: component(v.x), y: component(v.y) }
+fn within(v: Vec2, size: f64) -> BoundedVector {
+    let component = |value| BoundedValue { value, bound: size };
+    BoundedVector { x: component(v.x), y: component(v.y) }
 }
 
 /// Returns a vector that the scene gives, in axes of any direction.
-fn turned(v: Vec2) -> Bounded2 {
+fn turned(v: Vec2) -> BoundedVector {
     within(v, extent(v))
 }
 
@@ -278,8 +281,8 @@ mod tests {
     fn a_moment_is_as_long_as_nothing_moves() {
         let point =
             |x: f64, dx: f64| BoundedPointMotion::between([Vec2::new(x, 1.0), Vec2::new(x + dx, 1.0)], x, false);
-        let slow = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 0.0)], Bounded::exact(0.5));
-        let fast = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 2.0)], Bounded::exact(0.5));
+        let slow = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 0.0)], BoundedValue::exact(0.5));
+        let fast = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 2.0)], BoundedValue::exact(0.5));
         let (time, other) = (0.5, 0.5 + 1e-13);
         assert!(slow.is_moment(time, other) && !fast.is_moment(time, other));
         assert!(fast.is_moment(time, 0.5 + 1e-15));

@@ -8,7 +8,7 @@ use fosssim_num::{
 
 /// The smallest and the largest size of ordinary states.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Ordinary {
+pub(crate) struct OrdinaryRange {
     /// The largest position.
     position: f64,
     /// The largest velocity.
@@ -17,7 +17,7 @@ pub(crate) struct Ordinary {
     spread: f64,
 }
 
-impl Ordinary {
+impl OrdinaryRange {
     /// Returns the range of the scene's start: most states need no other.
     pub fn for_scene(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);

@@ -2,7 +2,7 @@
 //! fault of a wrong one, and all that hangs on the factors that others of the trace tell.
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
-    formulas::Expected,
+    formulas::ExpectedPolynomials,
     pending::{NONE, Pending},
     step_judgement::StepJudgement,
 };
@@ -10,7 +10,7 @@ use crate::finding::{Finding, FindingDetail, PolynomialPlace};
 use fosssim_findings::fair::Form;
 use fosssim_model::sim::PairKind;
 use fosssim_num::{
-    bounded::Bounded,
+    bounded::BoundedValue,
     polynomial::{MAX_COEFFICIENTS, Polynomial},
 };
 
@@ -18,7 +18,7 @@ fosssim_model::drops_leading!();
 
 /// A logged polynomial and where it stands.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Logged<'a> {
+pub(super) struct LoggedPolynomial<'a> {
     /// The polynomial's place.
     pub place: PolynomialPlace,
     /// The polynomial's number among those of its pair.
@@ -43,8 +43,8 @@ pub(super) enum PolynomialJudgement {
 /// Returns how a polynomial compares with the course's form.
 pub(super) fn compare_first(
     judged: &StepJudgement,
-    expected: &Expected,
-    logged: &Logged<'_>,
+    expected: &ExpectedPolynomials,
+    logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
     let own = expected.polynomial(logged.number);
     // Where there is another form, nobody asks what is wrong with this one.
@@ -59,14 +59,14 @@ impl StepJudgement {
     /// kept to be settled if `is_known`, that is if its positions are known.
     pub(super) fn note(
         &mut self,
-        expected: &Expected,
-        logged: &Logged<'_>,
+        expected: &ExpectedPolynomials,
+        logged: &LoggedPolynomial<'_>,
         first: Result<Match, Mismatch>,
         is_known: bool,
     ) -> PolynomialJudgement {
-        let Logged { place, number, list } = *logged;
+        let LoggedPolynomial { place, number, list } = *logged;
         let own = expected.polynomial(number);
-        let pend = |judged: &mut Self, form: Form, expected: &[Bounded], factors: Option<[f64; 2]>| {
+        let pend = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
                 judged.pend(logged, (form, false), expected, factors.unwrap_or(NONE));
             }
@@ -112,7 +112,13 @@ impl StepJudgement {
 
     /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's
     /// library would have kept of the assignment's own, claims a factor, which others have to confirm.
-    fn take(&mut self, logged: &Logged<'_>, expected: &[Bounded], found: Match, is_known: bool) -> PolynomialJudgement {
+    fn take(
+        &mut self,
+        logged: &LoggedPolynomial<'_>,
+        expected: &[BoundedValue],
+        found: Match,
+        is_known: bool,
+    ) -> PolynomialJudgement {
         let claims = found.scale.and_then(|scale| claimed_factors(expected, logged.list, scale));
         match claims {
             None => self.take_share_and_factor(logged.place.pair.kind, logged.number, &found),
@@ -136,7 +142,7 @@ impl StepJudgement {
     }
 
     /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, where it tells.
-    pub(super) fn note_course_form(&mut self, expected: &Expected, logged: &Logged<'_>) {
+    pub(super) fn note_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
         let Some(right) = expected.other_form(logged.number) else { return };
         let is_of_course = || {
             compare(right, logged.list, &[1.0]).is_err()
@@ -152,9 +158,9 @@ impl StepJudgement {
     /// Adds a polynomial that is right with these factors.
     fn pend(
         &mut self,
-        logged: &Logged<'_>,
+        logged: &LoggedPolynomial<'_>,
         (form, is_claim): (Form, bool),
-        expected: &[Bounded],
+        expected: &[BoundedValue],
         [least, most]: [f64; 2],
     ) {
         let place = (logged.place.pair.kind, logged.number);
@@ -186,8 +192,12 @@ impl StepJudgement {
 }
 
 /// Returns the finding about a wrong polynomial.
-pub(super) fn wrong_polynomial(logged: &Logged<'_>, expected: &[Bounded], mismatch: Mismatch) -> FindingDetail {
-    let &Logged { place, list, .. } = logged;
+pub(super) fn wrong_polynomial(
+    logged: &LoggedPolynomial<'_>,
+    expected: &[BoundedValue],
+    mismatch: Mismatch,
+) -> FindingDetail {
+    let &LoggedPolynomial { place, list, .. } = logged;
     let right: Vec<f64> = expected.iter().map(|c| c.value).collect();
     let (right, shown) =
         (Polynomial::trimmed(&right), Polynomial::untrimmed(&list[..list.len().min(MAX_COEFFICIENTS)]));
@@ -221,8 +231,8 @@ mod tests {
         let place = PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 };
         let mut judged = StepJudgement::default();
         for factors in bounds {
-            let expected = [1e-14, 1.0, 2.0].map(Bounded::exact);
-            let logged = Logged { place, number: 0, list: &[1.0, 2.0] };
+            let expected = [1e-14, 1.0, 2.0].map(BoundedValue::exact);
+            let logged = LoggedPolynomial { place, number: 0, list: &[1.0, 2.0] };
             judged.pend(&logged, (Form::Either, false), &expected, *factors);
         }
         judged.pending.iter().all(|pending| pending.finding([factor, factor]).is_none())

@@ -5,7 +5,7 @@
 //! are never right, unless the reference itself gets there from the scene's start.
 use super::{
     context::{Context, Records},
-    ordinary::Ordinary,
+    ordinary::OrdinaryRange,
     step::judge,
     step_judgement::StepJudgement,
 };
@@ -21,7 +21,7 @@ use fosssim_num::vector::at;
 #[derive(Debug)]
 pub(crate) struct Reach<'a> {
     scene: &'a Scene,
-    range: Ordinary,
+    range: OrdinaryRange,
     run: Option<Run>,
     /// Judges steps that are extraordinary for the reference, too.
     other: Option<Simulation>,
@@ -39,7 +39,7 @@ struct Run {
 impl<'a> Reach<'a> {
     /// Creates the reach when nothing but the scene is known.
     pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, range: Ordinary::for_scene(scene), run: None, other: None }
+        Self { scene, range: OrdinaryRange::for_scene(scene), run: None, other: None }
     }
 
     /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary

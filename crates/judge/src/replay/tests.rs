@@ -67,7 +67,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     (0..2).for_each(|_| simulation.step(&mut recorder).expect("a step"));
     let right = recorder.finish().expect("memory").0;
     // The same, with one polynomial more at the end of every list.
-    let (mut reader, mut writer) = (Reader::of_slice(&right, layout), Writer::new(Vec::new(), layout));
+    let (mut reader, mut writer) = (Reader::from_slice(&right, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a frame") {
         frame.polynomials.push(&[1.0]);

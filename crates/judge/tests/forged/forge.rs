@@ -4,7 +4,7 @@ use fosssim_judge::{
     fair::{
         FairVerdict, Judgement,
         compare::{compare, says_nothing, shows_factor},
-        formulas::{BoundedPairMotion, Expected},
+        formulas::{BoundedPairMotion, ExpectedPolynomials},
     },
     replay::{self, Options},
 };
@@ -13,7 +13,7 @@ use fosssim_model::{
     sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation, Steer, Steering},
     trace::{Frame, Layout, Reader, Recorder, Writer},
 };
-use fosssim_num::{bounded::Bounded, polynomial::Polynomial};
+use fosssim_num::{bounded::BoundedValue, polynomial::Polynomial};
 
 /// Products of such coefficients overflow.
 const OVERFLOWS: f64 = 1e100;
@@ -54,7 +54,7 @@ impl Random {
 struct Known {
     pair: Pair,
     number: usize,
-    expected: Expected,
+    expected: ExpectedPolynomials,
 }
 
 /// A scene, its right trace, and what its polynomials should be.
@@ -163,7 +163,7 @@ fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
         simulation.step(&mut (&mut *steer, &mut recorder)).ok()?;
     }
     let trace = recorder.finish().expect("memory").0;
-    let mut reader = Reader::of_slice(&trace, layout);
+    let mut reader = Reader::from_slice(&trace, layout);
     let (mut frames, mut frame) = (Vec::new(), Frame::default());
     while reader.next(&mut frame).ok()? {
         frames.push(frame.clone());
@@ -325,9 +325,9 @@ impl Change {
 /// numbers, so it may be anything; or it is right with the program's factor; or it is right with a factor that two of
 /// its coefficients agree on, or that takes nothing from it.
 fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
-    let of_form = |expected: &[Bounded]| {
-        let scaled: Vec<Bounded> =
-            expected.iter().map(|c| Bounded { value: factor * c.value, bound: factor * c.bound }).collect();
+    let of_form = |expected: &[BoundedValue]| {
+        let scaled: Vec<BoundedValue> =
+            expected.iter().map(|c| BoundedValue { value: factor * c.value, bound: factor * c.bound }).collect();
         let Ok(found) = compare(&scaled, list, &[1.0]) else { return false };
         let is_one = found.scale.is_none_or(|scale| (scale - 1.0).abs() < 1e-9);
         says_nothing(&scaled) || is_one || list.len() >= own.len() || shows_factor(&scaled, list)
@@ -472,7 +472,7 @@ pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
     let mut list = own.to_vec();
     let place = random.below(own.len().max(1));
     *list.get_mut(place)? *= 1.5;
-    let of_form = |expected: &[Bounded]| compare(expected, &list, &[1.0]).is_ok();
+    let of_form = |expected: &[BoundedValue]| compare(expected, &list, &[1.0]).is_ok();
     let is_right = of_form(known.expected.polynomial(known.number));
     let is_of_other_form = known.expected.other_form(known.number).is_some_and(of_form);
     if is_right || is_of_other_form || says_nothing(proof) || !shows_factor(proof, beside) {

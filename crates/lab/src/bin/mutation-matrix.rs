@@ -62,7 +62,7 @@ fn fair(outcome: &Outcome) -> Answer {
 fn main() -> anyhow::Result<ExitCode> {
     let folder = std::env::args_os().nth(1).map_or_else(|| PathBuf::from("assets"), PathBuf::from);
     let part = std::env::args().nth(2).unwrap_or_default();
-    let cases = WatchedScene::of_folder(&folder)?;
+    let cases = WatchedScene::from_folder(&folder)?;
     let rows: Vec<&Row> =
         CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && row.id.contains(&part)).collect();
     let matrix: Vec<Vec<MatrixCell>> =

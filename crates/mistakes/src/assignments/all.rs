@@ -7,7 +7,7 @@ use std::sync::LazyLock;
 
 /// The rows of what the milestones before collisions have in common with those behind them.
 static STATES: LazyLock<Vec<Row>> =
-    LazyLock::new(|| EDITS.iter().chain(STEPS).map(|row| row.of(Mistake::Step(row.mistake))).collect());
+    LazyLock::new(|| EDITS.iter().chain(STEPS).map(|row| row.with_mistake(Mistake::Step(row.mistake))).collect());
 
 /// Returns all rows, in the order of the assignments: forces and integrators come first.
 pub fn all_rows() -> impl Iterator<Item = &'static Row> {

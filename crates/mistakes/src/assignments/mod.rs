@@ -23,7 +23,7 @@ pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     };
     let probes = match assignment {
         Assignment::T2M2 => t2m2::probes::PROBES,
-        _ => states::probes::of(assignment),
+        _ => states::probes::probes_for(assignment),
     };
     probes.iter().map(read).collect()
 }

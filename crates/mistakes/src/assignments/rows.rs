@@ -52,7 +52,7 @@ pub struct RowOf<M> {
 impl<M> RowOf<M> {
     /// Returns the row with this mistake.
     #[must_use]
-    pub fn of<N>(self, mistake: N) -> RowOf<N> {
+    pub fn with_mistake<N>(self, mistake: N) -> RowOf<N> {
         let Self { id, kind, area, what, term, .. } = self;
         RowOf { mistake, id, kind, area, what, term }
     }

@@ -2,10 +2,10 @@
 use super::{
     Detail, Explanation,
     about::About,
-    known::{Known, is_empty_stage, known_or_open},
+    known::{KnownMistakes, is_empty_stage, known_or_open},
     naming::is_in_other_words,
     near, not_finite, polynomial,
-    sampling::{KeptStep, Sampled, Source, sampled},
+    sampling::{KeptStep, Source, TraceSamples, sample_trace},
     stages,
 };
 use crate::{
@@ -46,13 +46,13 @@ pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
 /// Explains a trace as [`explain`] does, whatever its records are read from.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::for_scene(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
-        return not_finite::of_source(scene, source);
+        return not_finite::find_in_trace(scene, source);
     }
-    let Sampled { mut reference, not_finite, scan, detections } = sampled(scene, source);
+    let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
     // Of a contest's program only the search for near pairs is its student's.
     let is_contest = scene.assignment() == Assignment::T2M3;
     let pairs = if is_contest { near::explain(&mut reference, scene, &scan) } else { None };
-    let Known { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
+    let KnownMistakes { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }

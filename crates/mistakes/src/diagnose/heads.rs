@@ -170,11 +170,11 @@ fn wrong_polynomials(
         }
         _ => None,
     });
-    let heads = guesses.map(|guess| Explanation::of_wrong(subjects.clone(), OfPolynomials::Guess(guess.clone())));
+    let heads = guesses.map(|guess| Explanation::for_wrong(subjects.clone(), OfPolynomials::Guess(guess.clone())));
     let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
     match likeliest {
         Some((named, head)) if named * 2 > most => Some(head),
-        _ => Some(Explanation::of_wrong(subjects, OfPolynomials::Nothing)),
+        _ => Some(Explanation::for_wrong(subjects, OfPolynomials::Nothing)),
     }
 }
 

@@ -19,13 +19,13 @@ use fosssim_model::{
 /// where all values are finite, or where the reference comes to the same.
 #[must_use]
 pub fn not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
-    of_source(scene, trace.into())
+    find_in_trace(scene, trace.into())
 }
 
 /// Explains the records at hand.
-pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
+pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
-        (StepReader::new(scene, source), Reference::new(scene), First::default());
+        (StepReader::new(scene, source), Reference::new(scene), FirstNotFinite::default());
     first.begin(&steps.frames);
     while let Some(step) = steps.next() {
         first.step(&mut reference, scene, step, &steps.frames);
@@ -35,13 +35,13 @@ pub(super) fn of_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
 
 /// Looks for the first value that is no finite number, step by step.
 #[derive(Default)]
-pub(super) struct First {
+pub(super) struct FirstNotFinite {
     is_found: bool,
     /// Nothing where the reference comes to the same.
     told: Option<NotFinite>,
 }
 
-impl First {
+impl FirstNotFinite {
     /// Looks at the first record.
     pub(super) fn begin(&mut self, frames: &StepFrames) {
         if let Some(wild) = wild_value(&frames.before.state) {
@@ -63,7 +63,7 @@ impl First {
         }
         let begins = wild_value(&frames.before.state).is_none() && (is_wild(&frames.mid) || is_wild(&frames.end));
         if begins {
-            *self = Self { is_found: true, told: of_step(reference, scene, step, frames) };
+            *self = Self { is_found: true, told: find_in_step(reference, scene, step, frames) };
         }
     }
 
@@ -95,7 +95,7 @@ fn is_wild(frame: &LenientFrame) -> bool {
 
 /// Returns the stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference
 /// does as well.
-fn of_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
+fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
     let (stage, value) = stage(scene, frames)?;

@@ -1,6 +1,6 @@
 //! Which mistakes are none of a program, whatever its wrong traces say.
 use super::{
-    Explanation, about::About, heads::several, known::shows_within, naming::alternatives, not_finite::of_source,
+    Explanation, about::About, heads::several, known::shows_within, naming::alternatives, not_finite::find_in_trace,
     sampling::Source, written::is_written,
 };
 use crate::student::{Area, Student, find, trace_within};
@@ -33,7 +33,7 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
     let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MOST_POLYNOMIALS) {
-        Ok(trace) | Err((trace, _)) => !of_source(scene, Source::whole(&trace)).is_empty(),
+        Ok(trace) | Err((trace, _)) => !find_in_trace(scene, Source::whole(&trace)).is_empty(),
     };
     let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MOST_ENDS);
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))

@@ -102,7 +102,7 @@ mod tests {
     }
 
     #[test]
-    fn of_what_is_not_written_a_scene_names_what_it_shows() {
+    fn a_scene_names_what_it_shows_of_what_is_not_written() {
         let traces = [vec![named("pp-empty", &[], (3, 3))], vec![named("ph-empty", &[], (3, 3))]];
         let likely = several(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely[0].key, Explanation::UNFINISHED);

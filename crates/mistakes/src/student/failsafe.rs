@@ -40,7 +40,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     if stops(world, zone) {
         stop(world, zone, q_start, state);
     } else {
-        let rigid = Rigid::new(world, zone, q_start, state);
+        let rigid = RigidBody::new(world, zone, q_start, state);
         if mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0 {
             rigid.carry_out(zone, state);
         }
@@ -86,7 +86,7 @@ fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 }
 
 /// A rigid body made of a zone's particles.
-struct Rigid<'a> {
+struct RigidBody<'a> {
     world: &'a World,
     q_start: &'a [f64],
     /// Center of mass at the start of the step.
@@ -101,7 +101,7 @@ struct Rigid<'a> {
     inertia: f64,
 }
 
-impl<'a> Rigid<'a> {
+impl<'a> RigidBody<'a> {
     fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
         let (center, shift) = (Vec2::zeros(), Vec2::zeros());
         let mut rigid = Self { world, q_start, center, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };

@@ -26,7 +26,9 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
             explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
         }
         // The integrator is the library's own, the forces are the student's.
-        Integrator::ForwardBackwardEuler => explicit(&world.of(Student::default()), world, SYMPLECTIC, false, state),
+        Integrator::ForwardBackwardEuler => {
+            explicit(&world.for_student(Student::default()), world, SYMPLECTIC, false, state)
+        }
         Integrator::SymplecticEuler => explicit(world, world, SYMPLECTIC, false, state),
         Integrator::LinearizedImplicitEuler if world.student.makes(StepMistake::LinearIterates) => {
             implicit(world, state, solves)?;

@@ -64,7 +64,7 @@ impl World {
 
     /// Returns the scene for another student's program.
     #[must_use]
-    pub fn of(&self, student: Student) -> Self {
+    pub fn for_student(&self, student: Student) -> Self {
         Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses) }
     }
 

@@ -4,7 +4,7 @@ use crate::student::find;
 use fosssim_findings::{
     Hints, SceneResult, Verdict,
     explanation::Explanation,
-    result::{Reason, Wrong},
+    result::{Reason, WrongTrace},
 };
 
 /// Cuts a result down to a level. The verdict, its reason and where the rule books differ stay at all levels, but at
@@ -14,7 +14,7 @@ pub fn cut_result(hints: Hints, result: &mut SceneResult) {
         return;
     }
     if hints == Hints::None && matches!(result.verdict, Verdict::WrongAnswer | Verdict::Unwritten) {
-        result.reason = Reason::Wrong(Wrong::Untold);
+        result.reason = Reason::Wrong(WrongTrace::Untold);
     }
     result.disclosure = result.disclosure.take().and_then(|all| hints.disclose(all));
     result.explanations = cut(hints, std::mem::take(&mut result.explanations));

@@ -44,7 +44,7 @@ pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
 }
 
 /// An element that is open.
-struct Open<'t> {
+struct OpenElement<'t> {
     name: &'t str,
     span: Range<usize>,
     /// Whether an element inside it has been complained about.
@@ -55,7 +55,7 @@ struct DocumentReader<'t, 'r> {
     text: &'t str,
     report: &'r mut Report,
     document: Document<'t>,
-    open: Vec<Open<'t>>,
+    open: Vec<OpenElement<'t>>,
     roots: usize,
     in_scene: bool,
     wrong_ends: usize,
@@ -171,7 +171,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
         // `/ >` is complained about as an attribute; it was meant to be the end of the element.
         if opens && !inner.trim_ascii_end().ends_with('/') {
-            self.open.push(Open { name, span: name_span, complained: false });
+            self.open.push(OpenElement { name, span: name_span, complained: false });
         } else if self.open.is_empty() {
             self.in_scene = false;
         }

@@ -267,7 +267,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     fn flaw<T>(&mut self, name: &str, text: &str, flaw: Flaw) -> Option<T> {
-        self.complain(Severity::Error, name, || words(text, &flaw));
+        self.complain(Severity::Error, name, || describe_flaw(text, &flaw));
         None
     }
 }
@@ -281,7 +281,7 @@ fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
 }
 
 /// Returns the message about a bad number: its flaw, and the remedy.
-fn words(text: &str, flaw: &Flaw) -> (String, String) {
+fn describe_flaw(text: &str, flaw: &Flaw) -> (String, String) {
     let text = quote(text.trim_ascii());
     match flaw {
         Flaw::Empty => ("is empty".to_owned(), "write a number".to_owned()),

@@ -5,7 +5,7 @@ use std::fmt;
 
 /// Something of a scene that is unknown to the programs of an assignment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Unknown {
+pub struct UnknownFeature {
     /// The assignment.
     pub assignment: Assignment,
     /// The part of the scene.
@@ -29,7 +29,7 @@ pub enum UnknownPart {
     Thickness(f64),
 }
 
-impl Unknown {
+impl UnknownFeature {
     /// Returns whether a program refuses the scene and writes no trace.
     #[must_use]
     pub const fn is_refused(&self) -> bool {
@@ -41,7 +41,7 @@ impl Unknown {
     }
 }
 
-impl fmt::Display for Unknown {
+impl fmt::Display for UnknownFeature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let programs = format!("programs of {}", self.assignment.key().to_uppercase());
         let verb = if self.is_refused() { "refuse" } else { "ignore" };
@@ -63,7 +63,7 @@ impl fmt::Display for Unknown {
 
 impl Scene {
     /// Returns everything that programs of this assignment do not know, each kind once.
-    pub fn unknown_to(&self, assignment: Assignment) -> impl Iterator<Item = Unknown> {
+    pub fn unknown_to(&self, assignment: Assignment) -> impl Iterator<Item = UnknownFeature> {
         let library = &assignment.definition().library;
         let integrator = Some(self.integrator).filter(|integrator| !library.integrators.contains(integrator));
         let forces = ForceKind::ALL
@@ -88,7 +88,10 @@ impl Scene {
             Some(UnknownPart::Collision(kind))
         };
         let parts = integrator.map(UnknownPart::Integrator).into_iter();
-        parts.chain(forces.map(UnknownPart::Force)).chain(collision).map(move |part| Unknown { assignment, part })
+        parts
+            .chain(forces.map(UnknownPart::Force))
+            .chain(collision)
+            .map(move |part| UnknownFeature { assignment, part })
     }
 
     /// Returns the assignments whose programs can run it, in the order of the course.

@@ -28,7 +28,7 @@ mod xml;
 
 pub use crate::assignments::Integrator;
 pub use checks::LARGEST_IMPLICIT;
-pub use known::{Unknown, UnknownPart};
+pub use known::{UnknownFeature, UnknownPart};
 pub use model::{
     Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
 };

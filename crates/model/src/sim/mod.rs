@@ -24,7 +24,9 @@ mod step_error;
 
 pub use collision::{PairMotion, PointMotion, formulas};
 pub use forces::{PenaltyPairs, PenaltyTerms, SweepOrder};
-pub use observer::{Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steer, Steering, Time, Wanted, Zone};
+pub use observer::{
+    Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steer, Steering, Time, WantedPairs, Zone,
+};
 pub use pair::{ByKind, Pair, PairKind};
 pub use pairs::{Pairs, pairs};
 pub use polynomial_bytes::PolynomialBytes;

@@ -21,10 +21,10 @@ pub trait Observer {
     /// Returns where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
     fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
     /// Returns the wishes of this observer about the pass's pairs; asked once or more in each pass. Unless it wants
-    /// [`Wanted::Calls`], `detection` is not called, nobody steers calls, and pairs are computed many at a time.
+    /// [`WantedPairs::Calls`], `detection` is not called, nobody steers calls, and pairs are computed many at a time.
     #[inline]
-    fn wanted(&mut self) -> Wanted<'_> {
-        Wanted::Calls
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        WantedPairs::Calls
     }
     /// Returns the one who steers the step, if anybody does.
     #[inline]
@@ -87,7 +87,7 @@ pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> R
 
 /// The wishes of an observer about the pairs of a detection pass.
 #[derive(Debug)]
-pub enum Wanted<'a> {
+pub enum WantedPairs<'a> {
     /// Every call, one by one.
     Calls,
     /// The polynomials as a trace holds them, to be appended here.
@@ -99,8 +99,8 @@ pub enum Wanted<'a> {
 /// The observer that hears nothing.
 impl Observer for () {
     #[inline]
-    fn wanted(&mut self) -> Wanted<'_> {
-        Wanted::Nothing
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        WantedPairs::Nothing
     }
 }
 
@@ -125,7 +125,7 @@ macro_rules! go_on {
 impl<O: Observer + ?Sized> Observer for &mut O {
     go_on!(self => (**self));
     #[inline]
-    fn wanted(&mut self) -> Wanted<'_> {
+    fn wanted(&mut self) -> WantedPairs<'_> {
         (**self).wanted()
     }
     #[inline]
@@ -138,13 +138,13 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 impl<A: Observer, B: Observer> Observer for (A, B) {
     go_on!(self => self.0, self.1);
     /// Returns the wish of one of them, if the other one wants nothing.
-    fn wanted(&mut self) -> Wanted<'_> {
-        if matches!(self.1.wanted(), Wanted::Nothing) {
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        if matches!(self.1.wanted(), WantedPairs::Nothing) {
             self.0.wanted()
-        } else if matches!(self.0.wanted(), Wanted::Nothing) {
+        } else if matches!(self.0.wanted(), WantedPairs::Nothing) {
             self.1.wanted()
         } else {
-            Wanted::Calls
+            WantedPairs::Calls
         }
     }
     fn steers(&mut self) -> Option<&mut dyn Steer> {

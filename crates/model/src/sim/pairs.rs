@@ -96,11 +96,11 @@ impl Pairs {
     /// Returns all pairs, in the order of the pass: particle by particle, with all later particles, then with the edges
     /// that it is no end of, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
-        (0..self.particles).flat_map(|particle| self.of(particle))
+        (0..self.particles).flat_map(|particle| self.pairs_of(particle))
     }
 
     /// Returns the pairs in which this particle comes first.
-    pub fn of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
+    pub fn pairs_of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
         PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::at(first))).flat_map(move |(kind, seconds)| {
             let is_pair = move |&second: &usize| match kind {
                 PairKind::ParticleEdge => !is_end(self.edges[second], first),
@@ -152,7 +152,7 @@ impl Pairs {
                 rest = more;
                 continue;
             }
-            for pair in self.of(particle) {
+            for pair in self.pairs_of(particle) {
                 match rest.checked_sub(pair.kind.polynomials()) {
                     Some(more) => rest = more,
                     None => return Some((pass, pair, rest)),

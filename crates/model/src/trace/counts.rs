@@ -1,7 +1,7 @@
 //! Counting what happens inside the steps: an observer that adds up and does nothing else.
 use crate::{
     scene::Scene,
-    sim::{ByKind, Impulse, Observer, Pair, Pass, Stage, State, Wanted, Zone, pairs},
+    sim::{ByKind, Impulse, Observer, Pair, Pass, Stage, State, WantedPairs, Zone, pairs},
 };
 use std::fmt;
 
@@ -90,8 +90,8 @@ impl Observer for EventCounts {
         }
     }
 
-    fn wanted(&mut self) -> Wanted<'_> {
-        Wanted::Nothing
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        WantedPairs::Nothing
     }
 
     fn hit(&mut self, pair: Pair) {

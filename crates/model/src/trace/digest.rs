@@ -32,9 +32,9 @@ impl fmt::Debug for Sha {
 
 /// The first eight bytes of a SHA-256; prints as 16 hexadecimal digits.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Short(pub u64);
+pub struct ShortDigest(pub u64);
 
-impl Short {
+impl ShortDigest {
     /// Returns the shortened digest.
     pub(super) fn from_digest(digest: Sha256) -> Self {
         let [a, b, c, d, e, f, g, h, ..] = finish(digest).0;
@@ -42,13 +42,13 @@ impl Short {
     }
 }
 
-impl fmt::Display for Short {
+impl fmt::Display for ShortDigest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{:016x}", self.0)
     }
 }
 
-impl fmt::Debug for Short {
+impl fmt::Debug for ShortDigest {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(self, f)
     }
@@ -70,7 +70,7 @@ fn finish(digest: Sha256) -> Sha {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Digests {
     /// Digest of each step's records, the initial record as step 0. An incomplete step has none.
-    pub steps: Vec<Short>,
+    pub steps: Vec<ShortDigest>,
     /// SHA-256 of all bytes.
     pub sha256: Sha,
     /// Number of all bytes.
@@ -112,7 +112,7 @@ impl Digests {
             frame(record, &current, reader.notes());
             digest.update(reader.raw());
             if !layout.is_mid(record) {
-                steps.push(Short::from_digest(std::mem::take(&mut digest)));
+                steps.push(ShortDigest::from_digest(std::mem::take(&mut digest)));
             }
         };
         let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };

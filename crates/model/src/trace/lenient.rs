@@ -157,7 +157,7 @@ pub struct Lenient<R> {
 impl<'a> Lenient<&'a [u8]> {
     /// Returns a reader of a trace in memory.
     #[must_use]
-    pub fn of_slice(trace: &'a [u8], layout: Layout) -> Self {
+    pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
         let mut reader = Self::new(trace, layout);
         reader.source = reader.source.with_length(trace.len() as u64);
         reader

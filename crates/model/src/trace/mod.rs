@@ -21,7 +21,7 @@ mod summary;
 mod writer;
 
 pub use counts::EventCounts;
-pub use digest::{Digests, Sha, Short};
+pub use digest::{Digests, Sha, ShortDigest};
 pub use error::{List, Malformation, TraceError};
 pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};
 pub use histogram::Histogram;

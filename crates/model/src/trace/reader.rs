@@ -46,8 +46,8 @@ pub struct Reader<R> {
 impl<'a> Reader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
     #[must_use]
-    pub fn of_slice(trace: &'a [u8], layout: Layout) -> Self {
-        Self::over(Lenient::of_slice(trace, layout), layout)
+    pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
+        Self::over(Lenient::from_slice(trace, layout), layout)
     }
 }
 

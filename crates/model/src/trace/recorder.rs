@@ -7,7 +7,7 @@ use super::{
     log::Log,
     writer::{Writer, WrittenTrace},
 };
-use crate::sim::{Detection, Impulse, Observer, Pass, State, Wanted};
+use crate::sim::{Detection, Impulse, Observer, Pass, State, WantedPairs};
 use std::io::{self, Write};
 
 /// Writes a trace: hand it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
@@ -70,8 +70,8 @@ impl<W: Write> Observer for Recorder<W> {
     }
 
     #[inline]
-    fn wanted(&mut self) -> Wanted<'_> {
-        Wanted::Bytes(&mut self.log.polynomials)
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        WantedPairs::Bytes(&mut self.log.polynomials)
     }
 
     fn detection(&mut self, detection: &Detection<'_>) {

@@ -4,7 +4,7 @@
 //! fewest digits that read back to the same bits. What a trace does not hold (passes, pair kinds, zones) is counted
 //! by [`EventCounts`](super::EventCounts) while a simulation runs.
 use super::{
-    digest::{Digests, Short},
+    digest::{Digests, ShortDigest},
     error::TraceError,
     frame::{Frame, LoggedImpulse},
     histogram::Histogram,
@@ -96,7 +96,7 @@ pub struct Summary {
     /// The step with the most impulses, among these with the most polynomials, among these the first.
     pub busiest: Option<StepView>,
     /// Digests of groups of steps: first and last step, and the digest of the steps' digests.
-    pub digests: Vec<(u32, u32, Short)>,
+    pub digests: Vec<(u32, u32, ShortDigest)>,
 }
 
 /// The polynomials of one step.
@@ -169,16 +169,16 @@ impl StepView {
 
 /// Returns the digests of steps in groups of equal length, of which a trace of `all` steps has few. The initial record
 /// is by itself. A single step keeps its own digest, the one that a listing of all steps shows.
-fn groups(steps: &[Short], all: u32) -> Vec<(u32, u32, Short)> {
+fn groups(steps: &[ShortDigest], all: u32) -> Vec<(u32, u32, ShortDigest)> {
     let (initial, later) = steps.split_at(steps.len().min(1));
     let mut first = 0;
-    let group = |steps: &[Short]| {
+    let group = |steps: &[ShortDigest]| {
         let last = first + steps.len() as u32 - 1;
         let digest = match steps {
             [single] => *single,
-            _ => {
-                Short::from_digest(steps.iter().fold(Sha256::new(), |all, step| all.chain_update(step.0.to_be_bytes())))
-            }
+            _ => ShortDigest::from_digest(
+                steps.iter().fold(Sha256::new(), |all, step| all.chain_update(step.0.to_be_bytes())),
+            ),
         };
         (std::mem::replace(&mut first, last + 1), last, digest)
     };

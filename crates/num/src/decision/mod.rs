@@ -35,7 +35,7 @@ mod short;
 mod tests;
 
 use super::{
-    bounded::{Bounded, UNIT_ROUNDOFF},
+    bounded::{BoundedValue, UNIT_ROUNDOFF},
     polynomial::MAX_COEFFICIENTS,
 };
 use exact::{ExactAnswer, exact_first};
@@ -112,7 +112,7 @@ pub struct CertifiedDecision {
 /// # Panics
 /// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one.
 #[must_use]
-pub fn decide(polynomials: &[&[Bounded]], units: f64) -> CertifiedDecision {
+pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision {
     let upper = Problem::new(polynomials, units, Ends::Upper);
     if !upper.is_finite() {
         return borderline(None, Level::Range);

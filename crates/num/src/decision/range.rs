@@ -4,7 +4,7 @@
 //! Levels L0 and L1 of [`super::decide`]: they look at one polynomial at a time. Every comparison allows for the
 //! rounding of the computation itself, so what it says is proved (rounding as in Higham, *Accuracy and Stability of
 //! Numerical Algorithms*, section 3.1).
-use super::{Bounded, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
+use super::{BoundedValue, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
 
 /// Which end of every coefficient's interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -28,7 +28,7 @@ const _: () = assert!(CONVERSION >= 2.0 * ROUNDINGS as f64 * UNIT_ROUNDOFF, "the
 
 /// One polynomial without errors.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Exactly {
+pub(crate) struct ExactPolynomial {
     /// Coefficients, lowest power first; zeros behind `length`.
     pub(crate) coefficients: [f64; MAX_COEFFICIENTS],
     /// How many there are.
@@ -53,7 +53,7 @@ pub(crate) struct Control {
 /// The polynomials of a detection for one extreme choice of coefficients.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Problem {
-    list: [Exactly; MAX_POLYNOMIALS],
+    list: [ExactPolynomial; MAX_POLYNOMIALS],
     count: usize,
 }
 
@@ -63,9 +63,9 @@ impl Problem {
     /// # Panics
     /// With too many polynomials or coefficients.
     #[inline]
-    pub(crate) fn new(polynomials: &[&[Bounded]], units: f64, ends: Ends) -> Self {
+    pub(crate) fn new(polynomials: &[&[BoundedValue]], units: f64, ends: Ends) -> Self {
         assert!(polynomials.len() <= MAX_POLYNOMIALS, "more polynomials than a detection has");
-        let empty = Exactly { coefficients: [0.0; MAX_COEFFICIENTS], length: 0, bound: 0.0 };
+        let empty = ExactPolynomial { coefficients: [0.0; MAX_COEFFICIENTS], length: 0, bound: 0.0 };
         let mut problem = Self { list: [empty; MAX_POLYNOMIALS], count: polynomials.len() };
         for (exactly, polynomial) in problem.list.iter_mut().zip(polynomials) {
             assert!(polynomial.len() <= MAX_COEFFICIENTS, "a polynomial of higher degree than a detection has");
@@ -80,7 +80,7 @@ impl Problem {
 
     /// Returns the polynomials.
     #[inline]
-    pub(crate) fn polynomials(&self) -> &[Exactly] {
+    pub(crate) fn polynomials(&self) -> &[ExactPolynomial] {
         &self.list[..self.count]
     }
 
@@ -100,10 +100,10 @@ impl Problem {
         if self.count == 0 {
             return Some((Level::Range, f64::INFINITY));
         }
-        let by = |test: fn(&Exactly) -> Option<f64>, level| {
+        let by = |test: fn(&ExactPolynomial) -> Option<f64>, level| {
             self.polynomials().iter().find_map(test).map(|slack| (level, slack))
         };
-        by(Exactly::range, Level::Range).or_else(|| by(Exactly::bernstein, Level::Bernstein))
+        by(ExactPolynomial::range, Level::Range).or_else(|| by(ExactPolynomial::bernstein, Level::Bernstein))
     }
 
     /// Returns whether all polynomials are positive at 0 (exact, no arithmetic is needed).
@@ -132,7 +132,7 @@ impl Problem {
     /// Returns the most powers of two over which the sizes of one polynomial's coefficients spread; zeros do not
     /// count.
     pub(crate) fn spread(&self) -> u64 {
-        let spread = |polynomial: &Exactly| {
+        let spread = |polynomial: &ExactPolynomial| {
             let exponents =
                 polynomial.coefficients.iter().filter(|value| **value != 0.0).map(|value| value.abs().to_bits() >> 52);
             exponents.clone().max().unwrap_or(0) - exponents.min().unwrap_or(0)
@@ -161,7 +161,7 @@ impl Problem {
 
 /// Returns one end of the interval in which a coefficient lies, rounded outwards.
 #[inline]
-fn end(coefficient: Bounded, units: f64, ends: Ends) -> f64 {
+fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
     if units == 0.0 || coefficient.bound == 0.0 {
         return coefficient.value;
     }
@@ -182,7 +182,7 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
     if bound > 0.0 { (0.99 * distance / (bound * UNIT_ROUNDOFF)).max(0.0) } else { f64::INFINITY }
 }
 
-impl Exactly {
+impl ExactPolynomial {
     /// Tries level L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive
     /// terms cannot make up for a negative constant.
     #[inline]

@@ -1,6 +1,6 @@
 use super::{
     super::{
-        bounded::{Bounded, UNIT_ROUNDOFF},
+        bounded::{BoundedValue, UNIT_ROUNDOFF},
         first_time::first_time_of,
     },
     Certainty, CertifiedDecision, Level, decide,
@@ -17,9 +17,9 @@ type Example<'a> = (&'a [&'a [f64]], Option<(f64, bool)>);
 
 /// The decision for coefficients whose terms add up to their modulus: bound = |value|.
 fn decided(lists: &[Vec<f64>], units: f64) -> CertifiedDecision {
-    let bounded: Vec<Vec<Bounded>> =
-        lists.iter().map(|list| list.iter().map(|&value| Bounded::rounded(value)).collect()).collect();
-    let slices: Vec<&[Bounded]> = bounded.iter().map(Vec::as_slice).collect();
+    let bounded: Vec<Vec<BoundedValue>> =
+        lists.iter().map(|list| list.iter().map(|&value| BoundedValue::rounded(value)).collect()).collect();
+    let slices: Vec<&[BoundedValue]> = bounded.iter().map(Vec::as_slice).collect();
     decide(&slices, units)
 }
 
@@ -37,14 +37,14 @@ fn owned(lists: &[&[f64]]) -> Lists {
 }
 
 /// A particle at rest at the origin and one that passes: polynomials of collisions.md 2, with their bounds.
-fn particle_pair(x: [f64; 2], d: [f64; 2], reach: f64) -> [Vec<Bounded>; 2] {
-    let [x0, x1, d0, d1] = [x[0], x[1], d[0], d[1]].map(Bounded::rounded);
+fn particle_pair(x: [f64; 2], d: [f64; 2], reach: f64) -> [Vec<BoundedValue>; 2] {
+    let [x0, x1, d0, d1] = [x[0], x[1], d[0], d[1]].map(BoundedValue::rounded);
     let (xx, xd, dd) = (x0 * x0 + x1 * x1, x0 * d0 + x1 * d1, d0 * d0 + d1 * d1);
-    let reach = Bounded::rounded(reach);
+    let reach = BoundedValue::rounded(reach);
     [vec![-dd, -2.0 * xd, reach * reach - xx], vec![-dd, -xd]]
 }
 
-fn decide_pair(pair: &[Vec<Bounded>; 2]) -> CertifiedDecision {
+fn decide_pair(pair: &[Vec<BoundedValue>; 2]) -> CertifiedDecision {
     decide(&[&pair[0], &pair[1]], 64.0)
 }
 
@@ -143,7 +143,7 @@ fn what_is_not_finite_is_borderline() {
             }
         }
     }
-    let unbounded = [Bounded { value: -1.0, bound: f64::INFINITY }];
+    let unbounded = [BoundedValue { value: -1.0, bound: f64::INFINITY }];
     assert_eq!(decide(&[&unbounded], 64.0).certainty, Certainty::Borderline);
     assert_eq!(decided(&owned(&[&[1.0]]), f64::NAN).certainty, Certainty::Borderline);
 }

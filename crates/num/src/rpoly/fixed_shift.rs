@@ -1,6 +1,6 @@
 //! The fixed-shift stage, and the choice between the two variable-shift iterations (root-finder.md 11 and 12).
 use super::{
-    Coefficients, Found, linear_iteration, quadratic_iteration,
+    Coefficients, SearchResult, linear_iteration, quadratic_iteration,
     scalars::{Division, ScalarKind, Scalars},
 };
 
@@ -53,7 +53,7 @@ pub(super) fn run<const N: usize>(
     v: f64,
     limit: usize,
     steps: &mut u32,
-) -> Option<Found> {
+) -> Option<SearchResult> {
     let mut factor = Convergence::START;
     let mut real = Convergence::START;
     let division = Division::<N>::new(polynomial, u, v);
@@ -103,7 +103,12 @@ enum Stage {
 impl Attempt<'_> {
     /// Chains the variable-shift iterations; each failure tightens its threshold.
     #[inline(never)]
-    fn run<const N: usize>(&self, factor: &mut Convergence, real: &mut Convergence, steps: &mut u32) -> Option<Found> {
+    fn run<const N: usize>(
+        &self,
+        factor: &mut Convergence,
+        real: &mut Convergence,
+        steps: &mut u32,
+    ) -> Option<SearchResult> {
         let mut k = self.k;
         let (mut u, mut v) = self.estimate;
         let (mut factor_tried, mut zero_tried) = (false, false);
@@ -115,7 +120,7 @@ impl Attempt<'_> {
                 Stage::Quadratic => {
                     if let Some((zeros, quotient)) = quadratic_iteration::run::<N>(self.polynomial, &mut k, u, v, steps)
                     {
-                        return Some(Found::Two { zeros, quotient });
+                        return Some(SearchResult::Two { zeros, quotient });
                     }
                     factor_tried = true;
                     factor.tighten();
@@ -129,7 +134,7 @@ impl Attempt<'_> {
                 Stage::Linear => {
                     let outcome = linear_iteration::run::<N>(self.polynomial, &mut k, self.zero, steps);
                     if let linear_iteration::Outcome::Zero(zero, quotient) = outcome {
-                        return Some(Found::One { zero, quotient });
+                        return Some(SearchResult::One { zero, quotient });
                     }
                     zero_tried = true;
                     real.tighten();

@@ -80,7 +80,7 @@ impl Zeros {
 }
 
 /// The result of a search stage, with the polynomial that is left: its first `n + 1 - found` coefficients.
-enum Found {
+enum SearchResult {
     One { zero: f64, quotient: Coefficients },
     Two { zeros: [Zero; 2], quotient: Coefficients },
 }
@@ -148,12 +148,12 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
         };
         match found {
             None => return Ok(()),
-            Some(Found::One { zero, quotient }) => {
+            Some(SearchResult::One { zero, quotient }) => {
                 zeros.report((zero, 0.0));
                 polynomial = quotient;
                 degree -= 1;
             }
-            Some(Found::Two { zeros: pair, quotient }) => {
+            Some(SearchResult::Two { zeros: pair, quotient }) => {
                 pair.into_iter().for_each(|zero| zeros.report(zero));
                 polynomial = quotient;
                 degree -= 2;
@@ -168,7 +168,7 @@ fn find<const N: usize>(
     polynomial: &mut Coefficients,
     direction: &mut (f64, f64),
     steps: &mut u32,
-) -> Result<Option<Found>, DoesNotTerminate> {
+) -> Result<Option<SearchResult>, DoesNotTerminate> {
     scaling::scale::<N>(polynomial);
     let bound = bound::lower_bound::<N>(polynomial, steps)?;
     let start = no_shift::run::<N>(polynomial);

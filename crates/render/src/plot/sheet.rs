@@ -31,7 +31,7 @@ const SERIES: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
 
 impl Ink {
     /// Returns the class of what is drawn along (`s`) or filled (`f`), and the color. Axes and grids are never filled.
-    fn look(self, kind: char) -> (String, &'static str) {
+    fn class_and_color(self, kind: char) -> (String, &'static str) {
         match self {
             Self::Axis => ("ax".to_owned(), "#1b1f24"),
             Self::Grid => ("gr".to_owned(), "#dfe3e8"),
@@ -108,20 +108,24 @@ impl Sheet {
     }
 
     /// Returns an attribute about looks, where no style sheet says it.
-    fn look(&self, attribute: &str, value: &str) -> String {
+    fn attribute_unless_styled(&self, attribute: &str, value: &str) -> String {
         if self.is_styled { String::new() } else { format!(" {attribute}=\"{value}\"") }
     }
 
     /// Returns the attributes of a path that is drawn along.
     fn along(&self, ink: Ink) -> String {
-        let (class, color) = ink.look('s');
-        format!(" class=\"{class}\"{}{}", self.look("stroke", color), self.look("fill", "none"))
+        let (class, color) = ink.class_and_color('s');
+        format!(
+            " class=\"{class}\"{}{}",
+            self.attribute_unless_styled("stroke", color),
+            self.attribute_unless_styled("fill", "none")
+        )
     }
 
     /// Returns the attributes of a shape that is filled.
     fn filled(&self, ink: Ink) -> String {
-        let (class, color) = ink.look('f');
-        format!(" class=\"{class}\"{}", self.look("fill", color))
+        let (class, color) = ink.class_and_color('f');
+        format!(" class=\"{class}\"{}", self.attribute_unless_styled("fill", color))
     }
 
     /// Draws a thin straight line without dashes.
@@ -163,7 +167,7 @@ impl Sheet {
             self.along(ink),
             // The style sheet's lines are this wide.
             if self.is_styled && width == 2.0 { String::new() } else { format!(" stroke-width=\"{}\"", pixel(width)) },
-            self.look("stroke-linejoin", "round"),
+            self.attribute_unless_styled("stroke-linejoin", "round"),
             ink.dash()
         );
     }
@@ -218,7 +222,7 @@ impl Sheet {
         let _ = writeln!(
             self.svg,
             "<text{class} x=\"{x}\" y=\"{y}\"{anchor}{}>{}</text>",
-            self.look("fill", color),
+            self.attribute_unless_styled("fill", color),
             escaped(text)
         );
     }

@@ -12,12 +12,12 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
         Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),
         Some(_) => Vec::new(),
-        None => of_finding(first, check.outcome.collisions).to_vec(),
+        None => finding_advice(first, check.outcome.collisions).to_vec(),
     }
 }
 
 /// Returns the advice of milestones whose steps log states only, by their collision handling.
-fn of_milestone(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
+fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
     Some(match (finding.detail, collisions) {
         (FindingDetail::MissedCollision { .. }, CollisionType::Simple) => &[
             "the detection of this pair: at the end of the step the two overlap and approach each other",
@@ -46,8 +46,8 @@ fn of_milestone(finding: &Finding, collisions: CollisionType) -> Option<&'static
 }
 
 /// Returns the advice by the kind of the first finding: what comes later often follows from it.
-fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
-    if let Some(advice) = of_milestone(finding, collisions) {
+fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
+    if let Some(advice) = milestone_advice(finding, collisions) {
         return advice;
     }
     match finding.detail {
@@ -117,7 +117,7 @@ fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'stati
             "the factor of your polynomials: the course's library drops leading coefficients below 1e-12",
             "polynomials in the units of the assignment's formulas are not affected",
         ],
-        FindingDetail::PairForce { is_doubled, .. } => of_pair(is_doubled),
+        FindingDetail::PairForce { is_doubled, .. } => pair_advice(is_doubled),
         FindingDetail::NoResult { .. } => &[
             "the steps before this one: numbers that are not finite or absurdly large, or that grow from step to step",
         ],
@@ -128,7 +128,7 @@ fn of_finding(finding: &Finding, collisions: CollisionType) -> &'static [&'stati
 }
 
 /// Returns the advice where a pair's force was left out, or applied twice.
-const fn of_pair(is_doubled: bool) -> &'static [&'static str] {
+const fn pair_advice(is_doubled: bool) -> &'static [&'static str] {
     match is_doubled {
         false => &[
             "the search for near pairs: it leaves this pair out",

@@ -22,7 +22,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     let total = outcome.parity.findings.counts.total();
     found.extend((total > 0).then(|| counted(total, "finding")));
     let follow = follows::count(outcome);
-    found.extend((follow > 0).then(|| format!("among them {}", follows::words(follow))));
+    found.extend((follow > 0).then(|| format!("among them {}", follows::describe(follow))));
     let parity = ("the original's rules", look, word, found.join(", "));
     let (look, word) = fair::verdict(judgement);
     Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])

@@ -38,6 +38,6 @@ pub(crate) fn count(outcome: &Outcome) -> u64 {
 }
 
 /// Returns the number of these polynomials with their name.
-pub(super) fn words(follow: u64) -> String {
+pub(super) fn describe(follow: u64) -> String {
     format!("polynomials that follow from wrong positions: {}", number(follow))
 }

@@ -256,7 +256,7 @@ fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     let heading = format!("Findings: {} in {}", count(account.counts.total()), counted(account.wrong_steps, "step"));
     let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::kinds(account, style));
     if follow > 0 {
-        text += &format!("  among them {}\n", follows::words(follow));
+        text += &format!("  among them {}\n", follows::describe(follow));
     }
     text
 }

@@ -7,7 +7,7 @@ use crate::{
 };
 use fosssim_judge::overlap::OverlapStudy;
 use fosssim_model::sim::Pair;
-use fosssim_num::{vector::Vec2, written::Written};
+use fosssim_num::{vector::Vec2, written::WrittenNumbers};
 use serde::Serialize;
 
 /// A decision to be shown, and where in a scene's run it is.

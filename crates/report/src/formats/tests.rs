@@ -5,8 +5,8 @@ use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, PassedOver, Reason, SceneGrade, Verdict,
     config::Visibility,
-    located::{Content, Failing, LocatedFailure},
-    result::{Ended, Reached, Wrong},
+    located::{Content, FailureKind, LocatedFailure},
+    result::{ProgramProgress, RunEnd, WrongTrace},
 };
 use fosssim_judge::{FindingKind, fair::Cause};
 use fosssim_mistakes::diagnose::{About, Explanation};
@@ -219,7 +219,7 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
     grade.groups[1].visibility = Visibility::Visible;
     grade.verdict = Verdict::RuntimeError;
     grade.located = Some(LocatedFailure {
-        failing: Failing::Crash,
+        failing: FailureKind::Crash,
         contents: vec![Content { family: "the failsafe moves a zone".into(), value: None }],
         failed: 24,
         with: 24,
@@ -300,12 +300,12 @@ fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
         let visible = &mut grade.groups[0].scenes;
         visible[0].result.verdict = Verdict::WrongAnswer;
         let kind = if choice == 1 { FindingKind::Position } else { FindingKind::Coefficient };
-        visible[0].result.reason = Reason::Wrong(Wrong::Steps { wrong: choice.into(), first: choice, kind });
+        visible[0].result.reason = Reason::Wrong(WrongTrace::Steps { wrong: choice.into(), first: choice, kind });
         visible[1].result.verdict = Verdict::RuntimeError;
-        visible[1].result.reason = Reason::Program(Reached { limit: None, steps: choice });
+        visible[1].result.reason = Reason::Program(ProgramProgress { limit: None, steps: choice });
         for scene in visible {
             let result = &mut scene.result;
-            result.ended = Some(Ended::Exited(choice.cast_signed()));
+            result.ended = Some(RunEnd::Exited(choice.cast_signed()));
             result.differs = (choice == 1).then_some(Cause::AbsoluteCoefficients);
             result.right_steps = choice;
             (result.measured.cpu, result.measured.wall) =

@@ -217,7 +217,7 @@ mod tests {
         assert!(class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
         let shown = |reader| {
             let told: Vec<Grade> =
-                grades.iter().map(|grade| Format::Json.told(grade, reader, false).into_owned()).collect();
+                grades.iter().map(|grade| Format::Json.visible_part(grade, reader, false).into_owned()).collect();
             let page = GradePage { grade: &grades[0], card: &|_| None, class: None, reader }.html();
             let table = csv_of_submissions(&told, &[]).contains(",kim,");
             (Format::Json.render(&told).contains("same_program"), page.contains("kim"), table)

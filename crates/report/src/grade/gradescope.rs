@@ -100,7 +100,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         stdout_visibility: "hidden",
         tests,
         extra_data: Extra {
-            verdict: grade.verdict.words(),
+            verdict: grade.verdict.text(),
             suite: plain(&grade.suite),
             version: env!("CARGO_PKG_VERSION"),
             sandbox: grade.layers.clone(),

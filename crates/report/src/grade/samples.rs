@@ -4,7 +4,7 @@ use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Hints, Marking, Visibility},
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
-    result::{BuildEnd, Ended, Failure, FolderContents, Measurements, Unusable, Wrong},
+    result::{BuildEnd, Failure, FolderContents, Measurements, RunEnd, UnusableReason, WrongTrace},
     score,
 };
 use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
@@ -121,7 +121,7 @@ pub(crate) fn bad() -> Grade {
     );
     grade.warnings = vec!["graded without a sandbox".to_owned()];
     grade.build =
-        Some(Build { end: BuildEnd::Ended(Ended::Exited(2)), output: "a.cpp:1: error: \u{1b}[1mno".to_owned() });
+        Some(Build { end: BuildEnd::Ended(RunEnd::Exited(2)), output: "a.cpp:1: error: \u{1b}[1mno".to_owned() });
     grade
 }
 
@@ -129,7 +129,7 @@ pub(crate) fn bad() -> Grade {
 pub(crate) fn unfit() -> Grade {
     let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
     let found = FolderContents::Others { names, more: 0, elsewhere: None };
-    let why = Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found });
+    let why = Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found });
     let scenes = |names: &[&str]| {
         let result = |name: &&str| SceneResult::without_run(name, 100, Verdict::Unusable, why.clone());
         names.iter().map(result).collect::<Vec<_>>()
@@ -178,9 +178,9 @@ pub(crate) fn unwritten() -> Grade {
         ..crate::explain::tests::explanations().swap_remove(1)
     };
     let result = |name: String| SceneResult {
-        ended: Some(Ended::Exited(0)),
+        ended: Some(RunEnd::Exited(0)),
         explanations: ["pp-empty", "pe-empty", "loop-empty"].map(empty).into(),
-        ..SceneResult::without_run(&name, 100, Verdict::Unwritten, Reason::Wrong(Wrong::Nothing))
+        ..SceneResult::without_run(&name, 100, Verdict::Unwritten, Reason::Wrong(WrongTrace::Nothing))
     };
     let scenes = |group: &str| (0..20).map(|number| result(format!("{group}/{number}"))).collect();
     let mut grade = grade(

@@ -10,7 +10,7 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
     let of = format!("of {} points for speed", points(marking.points));
     let reached = reached.map_or_else(|| "none yet".to_owned(), points);
     match source {
-        SpeedSource::Measured(measured) => format!("{reached} {of}: {}", of_ratio(marking, measured)),
+        SpeedSource::Measured(measured) => format!("{reached} {of}: {}", describe_ratio(marking, measured)),
         SpeedSource::NotAccepted => format!("{reached} {of}: they begin when all scenes of the group are accepted"),
         SpeedSource::Failed { scene, verdict } => {
             format!("{reached} {of}: a timed run of {scene} ended otherwise than the graded one ({verdict})")
@@ -21,7 +21,7 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
 }
 
 /// Returns the ratio, its spread, and how much the points depend on it.
-fn of_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
+fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));
     let sure =

@@ -1,7 +1,7 @@
 //! A detection call on a page: curves, intervals, coefficients.
 use super::markup::{compared, number, text};
 use crate::{describe::pair_key, detect::Detect, number::general};
-use fosssim_evidence::{InspectedCall, Logged};
+use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
     study::{self, Study},
@@ -39,14 +39,14 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) ->
         let _ = writeln!(out, "<p>{}</p>", text(&signs(study)));
     }
     let logged: &[Vec<f64>] = match &call.logged {
-        Logged::These(logged) => logged,
-        Logged::Nothing => {
+        CallLog::These(logged) => logged,
+        CallLog::Nothing => {
             out += "<p class=\"bad\">Your trace has logged nothing for this pair in this pass: it is not tested.</p>\n";
             &[]
         }
-        Logged::Unknown => &[],
+        CallLog::Unknown => &[],
     };
-    out += &coefficients(study, logged, call.logged == Logged::Nothing);
+    out += &coefficients(study, logged, call.logged == CallLog::Nothing);
     let differs: Vec<bool> = study.curves.iter().zip(logged).map(|(curve, own)| is_wrong(curve, own)).collect();
     if !differs.contains(&true) {
         return out + "</section></details>\n";

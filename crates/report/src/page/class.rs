@@ -159,7 +159,7 @@ impl ClassPage<'_> {
             state(grade),
             made.join(" "),
             self.link(grade),
-            grade.verdict.words(),
+            grade.verdict.text(),
             sort(grade.points),
             reached(grade.points),
             points(grade.max_points),

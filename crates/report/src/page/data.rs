@@ -1,7 +1,7 @@
 //! The data of the motion viewer: one JSON block per case, and the motions as packed doubles.
 use super::{
     Case, markup,
-    packed::{PackedMotions, Precision, Rounded},
+    packed::{PackedMotions, Precision, Rounding},
 };
 use crate::{
     check::{first::first, follows},
@@ -29,7 +29,7 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
     let PackedMotions { blocks, rounded } = PackedMotions::from_evidence(evidence, &tracks, precision);
     let mut out = String::new();
-    let data = markup::data(&of_case(case, evidence, rounded.as_ref()));
+    let data = markup::data(&case_data(case, evidence, rounded.as_ref()));
     let _ = writeln!(out, r#"<script type="application/json" id="case-{key}">{data}</script>"#);
     for ((name, _), block) in tracks.iter().zip(blocks) {
         let _ = writeln!(out, r#"<script type="application/octet-stream" id="{name}-{key}">{block}</script>"#);
@@ -37,7 +37,7 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
     out
 }
 
-fn of_case(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounded>) -> Value {
+fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -> Value {
     let is_full = case.hints == Hints::Full;
     let inspected: &[InspectedStep] = if is_full { &evidence.inspected } else { &[] };
     let Scene { particles, edges, half_planes, .. } = case.scene;

@@ -26,7 +26,7 @@ impl WhatIf {
 
 /// Returns the page about one trace that was judged, with all hints: its author has asked.
 #[must_use]
-pub fn of_examined(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
+pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;
     let trace = (examined.trace.is_whole() && !check.explanations.is_empty()).then(|| examined.trace.bytes());
     let what_if = check.explanations.first().and_then(|first| WhatIf::for_scene(scene, first, trace, evidence));

@@ -21,7 +21,7 @@ mod tests;
 
 pub use card::Card;
 pub use class::ClassPage;
-pub use examined::of_examined;
+pub use examined::examined_page;
 pub use explained::ExplainedPage;
 pub use graded::{Audience, GradePage};
 

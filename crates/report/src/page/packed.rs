@@ -34,7 +34,7 @@ pub(super) enum Precision {
 
 /// How motions were rounded.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Rounded {
+pub(super) struct Rounding {
     /// The unit of positions.
     pub(super) unit: f64,
     /// The records that are exact, counted from the first that is kept.
@@ -45,7 +45,7 @@ pub(super) struct Rounded {
 #[derive(Debug)]
 pub(super) struct PackedMotions {
     pub(super) blocks: Vec<String>,
-    pub(super) rounded: Option<Rounded>,
+    pub(super) rounded: Option<Rounding>,
 }
 
 impl PackedMotions {
@@ -57,7 +57,7 @@ impl PackedMotions {
                 return Self { blocks, rounded: None };
             }
         }
-        let rounded = Rounded { unit: unit(tracks, evidence.layout.particles), exact: exact(evidence) };
+        let rounded = Rounding { unit: unit(tracks, evidence.layout.particles), exact: exact(evidence) };
         let blocks =
             tracks.iter().map(|(_, track)| base64(&round(track, evidence.layout.particles, &rounded))).collect();
         Self { blocks, rounded: Some(rounded) }
@@ -101,7 +101,7 @@ fn exact(evidence: &Evidence) -> Vec<usize> {
     records
 }
 
-fn round(track: &Track, particles: usize, rounded: &Rounded) -> Vec<u8> {
+fn round(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
     let size = 4 * particles;
     let kept: Vec<usize> = rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
     let mut out = (kept.len() as u64).to_le_bytes().to_vec();
@@ -167,8 +167,8 @@ mod tests {
     fn rounded_motions_are_near() {
         let value = |k: usize| if k == 12 { f64::NAN } else { (k as f64 * 0.37).sin() * (1.0 + k as f64) };
         let all = evidence(3, 20, value);
-        let Rounded { unit, .. } = packed(&all, Precision::Rounded).rounded.expect("rounded");
-        let bytes = round(&all.submission, 3, &Rounded { unit, exact: vec![2, 5] });
+        let Rounding { unit, .. } = packed(&all, Precision::Rounded).rounded.expect("rounded");
+        let bytes = round(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
         assert_eq!(u64::from_le_bytes(bytes[..8].try_into().expect("eight")), 2);
         assert_eq!(bytes[8..8 + 96], super::bytes(&all.submission.values[24..36])[..]);
         let (mut at, mut last) = (8 + 2 * 96, [0_i64; 6]);

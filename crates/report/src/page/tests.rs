@@ -5,7 +5,7 @@ use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
     disclosure::Disclosure,
-    result::Wrong,
+    result::WrongTrace,
     score,
 };
 use fosssim_judge::{Outcome, Rules, replay};
@@ -221,7 +221,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
     let card = Card::for_case(&case, 3).and_then(|card| Card::from_kept(&card.kept()));
-    let why = Reason::Wrong(Wrong::Untold);
+    let why = Reason::Wrong(WrongTrace::Untold);
     let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
     result.disclosure = Some(Disclosure::from_outcome(&outcome, Rules::Fair));
     result.explanations = all;

@@ -1,5 +1,5 @@
 //! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
-use fosssim_findings::located::{Content, Failing, LocatedFailure};
+use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
 
 /// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
@@ -12,12 +12,12 @@ pub fn located(found: &LocatedFailure) -> String {
     let scenes = format!("{with} scenes {}", place_of(place));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
     let verb = match failing {
-        Failing::Crash => "crash",
-        Failing::Error => "end with an error code",
-        Failing::Time => "run out of time",
-        Failing::Memory => "need more memory than allowed",
-        Failing::Output => "write more than allowed",
-        Failing::Several => "crash or run into a limit",
+        FailureKind::Crash => "crash",
+        FailureKind::Error => "end with an error code",
+        FailureKind::Time => "run out of time",
+        FailureKind::Memory => "need more memory than allowed",
+        FailureKind::Output => "write more than allowed",
+        FailureKind::Several => "crash or run into a limit",
     };
     let record = match step {
         0 => "the first one".to_owned(),
@@ -55,7 +55,7 @@ mod tests {
             value: value.map(|words| words.map(Into::into)),
         };
         let found = LocatedFailure {
-            failing: Failing::Crash,
+            failing: FailureKind::Crash,
             contents: vec![
                 content("the failsafe moves a zone", None),
                 content("a step of hybrid", Some(["zones", "one"])),
@@ -73,7 +73,7 @@ mod tests {
              (zones: one)."
         );
         let some = LocatedFailure {
-            failing: Failing::Several,
+            failing: FailureKind::Several,
             contents: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
             failed: 7,
             with: 9,

@@ -10,7 +10,7 @@ fn says(reason: Reason) -> String {
 
 #[test]
 fn what_is_there_instead_of_the_program_is_one_sentence() {
-    let says = |found| says(Reason::Unusable(Unusable::NoProgram { sought: "FOSSSim".to_owned(), found }));
+    let says = |found| says(Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found }));
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     assert_eq!(says(FolderContents::Nothing), "no program called FOSSSim in the upload; it is empty");
     let closed = FolderContents::Unreadable("permission denied".to_owned());
@@ -28,16 +28,20 @@ fn what_is_there_instead_of_the_program_is_one_sentence() {
 #[test]
 fn a_limit_says_how_far_the_trace_came() {
     let stopped = |limit, steps| {
-        let why = Reason::Program(Reached { limit: Some(limit), steps });
+        let why = Reason::Program(ProgramProgress { limit: Some(limit), steps });
         let result = SceneResult::without_run("a/b", 15, Verdict::TimeLimit, why);
-        summary(&SceneResult { ended: Some(Ended::WallLimit), ..result })
+        summary(&SceneResult { ended: Some(RunEnd::WallLimit), ..result })
     };
     let time = Limit::Time(Duration::from_millis(2500));
     assert_eq!(stopped(time, 4), "the program used up its time on the clock (2.5 s) at step 5 of 15");
     assert_eq!(stopped(time, 15), "the program used up its time on the clock (2.5 s) after its last step");
-    let crash =
-        SceneResult::without_run("a/b", 15, Verdict::RuntimeError, Reason::Program(Reached { limit: None, steps: 4 }));
-    let crash = SceneResult { ended: Some(Ended::Signalled(11)), ..crash };
+    let crash = SceneResult::without_run(
+        "a/b",
+        15,
+        Verdict::RuntimeError,
+        Reason::Program(ProgramProgress { limit: None, steps: 4 }),
+    );
+    let crash = SceneResult { ended: Some(RunEnd::Signalled(11)), ..crash };
     assert!(summary(&crash).ends_with("; the last complete record is that of step 4 of 15"), "{}", summary(&crash));
     assert!(!ending(&crash).contains("step"), "the same in many scenes: {}", ending(&crash));
     assert!(stopped(Limit::Memory(512 << 20), 0).ends_with("(512 MiB) at step 1 of 15"));
@@ -45,12 +49,12 @@ fn a_limit_says_how_far_the_trace_came() {
 
 #[test]
 fn a_wrong_trace_says_how_many_steps_and_where_first() {
-    let steps = |wrong| says(Reason::Wrong(Wrong::Steps { wrong, first: 3, kind: FindingKind::Coefficient }));
+    let steps = |wrong| says(Reason::Wrong(WrongTrace::Steps { wrong, first: 3, kind: FindingKind::Coefficient }));
     assert_eq!(steps(12), "12 of 15 steps are wrong, first step 3: wrong coefficient");
     assert_eq!(steps(1), "1 of 15 steps is wrong, first step 3: wrong coefficient");
-    assert_eq!(says(Reason::Wrong(Wrong::Untold)), "the trace is wrong");
+    assert_eq!(says(Reason::Wrong(WrongTrace::Untold)), "the trace is wrong");
     assert_eq!(
-        says(Reason::Wrong(Wrong::FirstRecord(FindingKind::Position))),
+        says(Reason::Wrong(WrongTrace::FirstRecord(FindingKind::Position))),
         "the first record is wrong: wrong position"
     );
     assert_eq!(says(Reason::Right), "all 15 steps are right");
@@ -58,7 +62,7 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 
 #[test]
 fn details_are_what_is_told_and_nothing_else() {
-    let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(Wrong::Untold));
+    let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Untold));
     assert_eq!(details(&result), [""; 0]);
     let first = DisclosedFinding::Place { step: 4, kind: FindingKind::Position, place: FindingPlace::Particle(2) };
     let objects = DisclosedFinding::Place {
@@ -90,7 +94,7 @@ fn details_are_what_is_told_and_nothing_else() {
         }),
         trailing_bytes: true,
     };
-    let result = SceneResult { disclosure: Some(told), ended: Some(Ended::Exited(127)), ..result };
+    let result = SceneResult { disclosure: Some(told), ended: Some(RunEnd::Exited(127)), ..result };
     let lines = details(&result);
     assert!(lines[0].starts_with("exit code 127 usually means"));
     assert_eq!(

@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::{
     job::Policy,
     layers::{Layer, LayerReport, is_active},
-    outcome::Ended,
+    outcome::RunEnd,
 };
 
 /// The need of an attack, without which it proves nothing.
@@ -53,13 +53,13 @@ pub(super) struct ExpectedEnd {
 
 impl ExpectedEnd {
     /// Returns whether the run ended in this way.
-    pub(super) fn matches(&self, ended: &Ended) -> bool {
+    pub(super) fn matches(&self, ended: &RunEnd) -> bool {
         let detail = match ended {
-            Ended::Exited(code) => code.to_string(),
-            Ended::Signalled(signal) => signal.to_string(),
+            RunEnd::Exited(code) => code.to_string(),
+            RunEnd::Signalled(signal) => signal.to_string(),
             // The call's name comes first; where calls cannot be named, any violation will do.
-            Ended::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
-            Ended::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
+            RunEnd::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
+            RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
             _ => String::new(),
         };
         self.kind == ended.kind() && self.detail.as_ref().is_none_or(|expected| *expected == detail)
@@ -145,10 +145,10 @@ mod tests {
         assert_eq!(attack.policy, Policy::Tools);
         assert_eq!(attack.wall, Some(Duration::from_millis(300)));
         assert_eq!(attack.needs, [AttackNeed::ALL[0]]);
-        let matches = |ended: &Ended| attack.expected.iter().any(|expected| expected.matches(ended));
-        assert!(matches(&Ended::Exited(0)) && !matches(&Ended::Exited(66)));
-        assert!(matches(&Ended::Violation { call: "ptrace".into() }));
-        assert!(!matches(&Ended::Violation { call: "bpf".into() }));
+        let matches = |ended: &RunEnd| attack.expected.iter().any(|expected| expected.matches(ended));
+        assert!(matches(&RunEnd::Exited(0)) && !matches(&RunEnd::Exited(66)));
+        assert!(matches(&RunEnd::Violation { call: "ptrace".into() }));
+        assert!(!matches(&RunEnd::Violation { call: "bpf".into() }));
     }
 
     #[test]

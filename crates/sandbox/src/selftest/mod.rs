@@ -27,7 +27,7 @@ use super::{
     fault::SandboxError,
     job::{Job, Limits},
     layers::{Layer, is_active},
-    outcome::{Ended, RunOutcome},
+    outcome::{RunEnd, RunOutcome},
     running::LeftFolder,
     supervisor::processes,
     sys,
@@ -41,7 +41,7 @@ const PERMIT: &str = "FOSSSIM_ATTACK";
 const GRADER: &str = "FOSSSIM_GRADER";
 const GROUP: &str = "FOSSSIM_GRADER_GROUP";
 /// How an attack ends whose forbidden call was refused, and not by the sandbox, which would have ended it.
-const REFUSED: Ended = Ended::Exited(77);
+const REFUSED: RunEnd = RunEnd::Exited(77);
 /// Attacks are built without optimization, which would take useless-looking stores and loops away.
 const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
 /// The trace's file.
@@ -202,7 +202,7 @@ impl Place<'_> {
             // Such runs have a supervisor in common: what this one leaves in it is there for the next.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
-                return Err(broken(format!("in a first run it {}{}", outcome.ended, words(&outcome))));
+                return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
             }
             if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
                 return Err(broken("it printed a secret in a first run".into()));
@@ -217,7 +217,7 @@ impl Place<'_> {
         // In a container, the engine's own filter may be first to refuse a forbidden call, and then nobody is told.
         let refused = outcome.ended == REFUSED && attack.expects_violation() && is_filtered();
         if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
-            return Err(broken(format!("it {}{}", outcome.ended, words(&outcome))));
+            return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
         }
         if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
             return Err(broken("it printed a secret".into()));
@@ -313,7 +313,7 @@ fn survivor(program: &Path) -> Option<i32> {
 }
 
 /// Returns the end of the program's output, for a broken promise.
-fn words(outcome: &RunOutcome) -> String {
+fn last_output(outcome: &RunOutcome) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);
         text.lines().last().map(|line| line.chars().take(200).collect::<String>().escape_debug().to_string())

@@ -10,19 +10,19 @@ use std::{
 
 use crate::{
     machine,
-    sys::{self, Announced, CallAnswer},
+    sys::{self, CallAnswer, PendingCall},
 };
 
 /// Returns the memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers
 /// itself.
-fn memory(announced: &Announced, user: Option<u32>) -> io::Result<File> {
+fn memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
 }
 
 /// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
 /// library sorts long arrays by it.
-pub(super) fn about_machine(announced: &Announced, user: Option<u32>) -> CallAnswer {
+pub(super) fn about_machine(announced: &PendingCall, user: Option<u32>) -> CallAnswer {
     match memory(announced, user) {
         Err(_) => CallAnswer::GoOn,
         Ok(memory) if memory.write_all_at(&machine::without_others(), announced.arguments[0]).is_ok() => {
@@ -58,7 +58,7 @@ impl SharedWaits {
     const LONGEST: Duration = Duration::from_millis(2);
 
     /// Has the thread wait; an answer that needs no wait comes back.
-    pub(super) fn add(&mut self, announced: &Announced, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
+    pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
         let Ok(memory) = memory(announced, user) else { return Some(CallAnswer::GoOn) };
         let [word, _, value, ..] = announced.arguments;
         let limit = match limit(announced, &memory, now) {
@@ -116,7 +116,7 @@ impl SharedWait {
 }
 
 /// Returns the time until which the thread waits: from now on (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
-fn limit(announced: &Announced, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
+fn limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
     let [_, operation, _, place, ..] = announced.arguments;
     if place == 0 {
         return Ok(None);
@@ -141,10 +141,10 @@ mod tests {
     use super::*;
 
     /// Returns a wait of this very process for the word, with the limit at this place.
-    fn announced(operation: i32, word: &u32, value: u32, limit: Option<&[i64; 2]>) -> Announced {
+    fn announced(operation: i32, word: &u32, value: u32, limit: Option<&[i64; 2]>) -> PendingCall {
         let limit = limit.map_or(0, |limit| (&raw const *limit) as u64);
         let arguments = [(&raw const *word) as u64, operation as u64, value.into(), limit, 0, 0];
-        Announced { id: 1, thread: std::process::id(), call: libc::SYS_futex, arguments }
+        PendingCall { id: 1, thread: std::process::id(), call: libc::SYS_futex, arguments }
     }
 
     #[test]

@@ -23,7 +23,7 @@ use super::{filter, filter::Purpose, processes, view, volatile, walls};
 use crate::{
     mounts,
     sys::{self, Access, Resource},
-    wire::{self, EXECUTE, Failure, Raw, RunOrder, stage},
+    wire::{self, EXECUTE, Failure, RawBytes, RunOrder, stage},
 };
 
 /// Announces that a seccomp listener comes along.
@@ -254,7 +254,7 @@ fn environment(order: &RunOrder) -> io::Result<Strings> {
     // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
     let home =
         if sys::accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) { order.folder.clone() } else { b".".to_vec() };
-    let mut variables: Vec<(Raw, Raw)> = vec![
+    let mut variables: Vec<(RawBytes, RawBytes)> = vec![
         (b"PATH".to_vec(), b"/usr/local/bin:/usr/bin:/bin".to_vec()),
         (b"LC_ALL".to_vec(), b"C".to_vec()),
         (b"HOME".to_vec(), home.clone()),
@@ -271,7 +271,7 @@ fn environment(order: &RunOrder) -> io::Result<Strings> {
     variables.into_iter().map(|(name, value)| c_string(&[name, value].join(&b'='))).collect()
 }
 
-fn c_string(raw: &Raw) -> io::Result<CString> {
+fn c_string(raw: &RawBytes) -> io::Result<CString> {
     CString::new(raw.as_slice()).map_err(io::Error::other)
 }
 

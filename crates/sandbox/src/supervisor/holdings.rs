@@ -28,7 +28,7 @@ pub(super) struct Holdings {
 /// Returns the memory and files of these processes (each with one of its threads). `root` is the working folder, the
 /// only place in which they make files. `executed` asks for the files that they run, too, and `page_tables` for the
 /// kernel's books about their memory, which matter where address space is not limited.
-pub(super) fn of(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
+pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
     let mut holdings = Holdings::default();
     let mut seen = BTreeSet::new();
     let mut mapped = Vec::new();
@@ -111,7 +111,7 @@ mod tests {
         file.sync_all().unwrap();
         std::fs::remove_file(&path).unwrap();
         let own = std::process::id() as i32;
-        assert!(of(&[(own, own)], folder.path(), false, false).nameless >= 1 << 20);
+        assert!(measure(&[(own, own)], folder.path(), false, false).nameless >= 1 << 20);
     }
 
     #[test]
@@ -134,6 +134,6 @@ mod tests {
     #[test]
     fn page_tables_are_memory_where_they_are_asked_for() {
         let own = std::process::id() as i32;
-        assert!(of(&[(own, own)], Path::new("/nowhere"), false, true).memory > 0);
+        assert!(measure(&[(own, own)], Path::new("/nowhere"), false, true).memory > 0);
     }
 }

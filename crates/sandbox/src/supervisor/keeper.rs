@@ -24,14 +24,14 @@ use std::{
 
 use super::{
     namespaces,
-    prepared::{Held, PreparedRun},
+    prepared::{HeldResources, PreparedRun},
     run::{self, Run},
     view,
 };
 use crate::{
     mounts,
     sys::{self, Fork, Readiness},
-    wire::{self, Event, Failure, Raw, RunOrder, stage},
+    wire::{self, Event, Failure, RawBytes, RunOrder, stage},
 };
 
 /// A keeper without orders goes after this time, so that its user is there for others.
@@ -66,7 +66,7 @@ struct RunRequest {
     control: File,
     answers: File,
     folder: OwnedFd,
-    files: Vec<(Raw, Vec<u8>)>,
+    files: Vec<(RawBytes, Vec<u8>)>,
 }
 
 impl RunRequest {
@@ -81,7 +81,7 @@ impl RunRequest {
             return Err(io::ErrorKind::InvalidData.into());
         };
         let order: RunOrder = wire::receive(socket)?;
-        let file = |(name, length): &(Raw, u64)| Ok((name.clone(), wire::receive_bytes(socket, *length)?));
+        let file = |(name, length): &(RawBytes, u64)| Ok((name.clone(), wire::receive_bytes(socket, *length)?));
         let files = order.files.iter().map(file).collect::<io::Result<_>>()?;
         Ok(Some(Self { order, control: control.into(), answers: answers.into(), folder, files }))
     }
@@ -91,7 +91,7 @@ enum Side {
     /// Outside: nothing to do but to wait for the keeper.
     Guardian {
         keeper: i32,
-        held: Held,
+        held: HeldResources,
     },
     Keeper(Keeper),
 }
@@ -100,7 +100,7 @@ enum Side {
 fn settle(order: &RunOrder) -> Result<Side, Failure> {
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(stage("fork"))?;
-    let held = Held::take(order)?;
+    let held = HeldResources::take(order)?;
     if let Fork::Parent(keeper) = namespaces::leave()? {
         return Ok(Side::Guardian { keeper, held });
     }
@@ -112,7 +112,7 @@ fn settle(order: &RunOrder) -> Result<Side, Failure> {
 
 struct Keeper {
     /// Every run takes it, in its own copy of this.
-    held: Option<Held>,
+    held: Option<HeldResources>,
     prepared: PreparedRun,
 }
 

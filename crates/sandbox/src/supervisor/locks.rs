@@ -8,7 +8,7 @@
 use std::path::Path;
 
 use super::filter::LOCK_COMMANDS;
-use crate::sys::Announced;
+use crate::sys::PendingCall;
 
 /// Returns whether the call locks a file. Other commands for descriptors are never announced.
 pub(super) fn concerns(call: i64) -> bool {
@@ -16,7 +16,7 @@ pub(super) fn concerns(call: i64) -> bool {
 }
 
 /// Returns whether the announced lock is of a file beneath `root`.
-pub(super) fn is_inside(announced: &Announced, root: &Path) -> bool {
+pub(super) fn is_inside(announced: &PendingCall, root: &Path) -> bool {
     let known = announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
     let entry = format!("/proc/{}/fd/{}", announced.thread, announced.arguments[0] as i32);
     known && std::fs::read_link(entry).is_ok_and(|place| place.starts_with(root))

@@ -16,7 +16,7 @@ use std::{
 };
 
 use super::calls;
-use crate::sys::{self, Announced, OFlags};
+use crate::sys::{self, OFlags, PendingCall};
 
 /// Set-user and set-group bits are not given away.
 const MODE_BITS: u64 = 0o1777;
@@ -31,7 +31,7 @@ pub(super) fn concerns(call: i64) -> bool {
 /// # Errors
 ///
 /// The error number for the caller.
-pub(super) fn change(announced: &Announced, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
+pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;
     let (file, mode) = match announced.call {

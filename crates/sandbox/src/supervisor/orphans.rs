@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{
-    processes::{of_session, of_user, stop_then_kill},
+    processes::{find_of_session, find_of_user, stop_then_kill},
     slot,
 };
 
@@ -16,8 +16,8 @@ pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
     let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..ROUNDS {
         let victims = stop_then_kill(|| {
-            let mut victims = session.map(of_session).unwrap_or_default();
-            victims.extend(user.into_iter().flat_map(of_user));
+            let mut victims = session.map(find_of_session).unwrap_or_default();
+            victims.extend(user.into_iter().flat_map(find_of_user));
             victims
         });
         if victims.is_empty() {

@@ -12,14 +12,14 @@ use crate::{
 };
 
 /// The resources that a run has to itself on this machine, for as long as this is held.
-pub(super) struct Held {
+pub(super) struct HeldResources {
     /// A user of its own.
     pub(super) slot: Option<slot::Slot>,
     /// A control group.
     pub(super) group: Option<Group>,
 }
 
-impl Held {
+impl HeldResources {
     /// Takes the resources that the order asks for.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);

@@ -99,7 +99,7 @@ pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
 }
 
 /// Returns the processes of a user, by the ids that `/proc` entries belong to.
-pub(super) fn of_user(user: u32) -> Vec<i32> {
+pub(super) fn find_of_user(user: u32) -> Vec<i32> {
     use std::os::unix::fs::MetadataExt;
     let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
     all().filter(owned).collect()
@@ -107,7 +107,7 @@ pub(super) fn of_user(user: u32) -> Vec<i32> {
 
 /// Returns the threads of a user, as the kernel counts them for its limit.
 pub(super) fn threads_of_user(user: u32) -> u64 {
-    of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
+    find_of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
 }
 
 /// The processes that did not end.
@@ -137,11 +137,11 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         }
         let victims = stop_then_kill(|| {
             let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
-            victims.extend(user.into_iter().flat_map(of_user));
+            victims.extend(user.into_iter().flat_map(find_of_user));
             victims
         });
         // No child is left, and no zombie either.
-        if reap_all(&mut reaped) && user.is_none_or(|user| of_user(user).is_empty()) {
+        if reap_all(&mut reaped) && user.is_none_or(|user| find_of_user(user).is_empty()) {
             return LeftProcesses::default();
         }
         if start.elapsed() > PATIENCE {
@@ -164,7 +164,7 @@ fn reap_all(reaped: &mut impl FnMut(sys::ReapedProcess)) -> bool {
 }
 
 /// Returns the living processes of a session.
-pub(super) fn of_session(session: i32) -> Vec<i32> {
+pub(super) fn find_of_session(session: i32) -> Vec<i32> {
     let members = all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
     members.map(|stat| stat.pid).collect()
 }

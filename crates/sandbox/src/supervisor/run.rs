@@ -22,12 +22,12 @@ use super::{
     group::Group,
     holdings, locks, modes,
     namespaces::{self, Side},
-    prepared::{Held, PreparedRun},
+    prepared::{HeldResources, PreparedRun},
     processes, slot,
     streams::CapturedStream,
 };
 use crate::{
-    outcome::Ended,
+    outcome::RunEnd,
     sys::{self, CallAnswer, Fork, OFlags, Readiness},
     wire::{self, Event, Failure, Report, RunOrder, stage},
 };
@@ -77,7 +77,7 @@ enum SettledRun {
 fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
-    let held = Held::take(&order)?;
+    let held = HeldResources::take(&order)?;
     if order.walls.namespaces
         && let Side::Outside(code) = namespaces::enter(&order)?
     {
@@ -110,7 +110,7 @@ pub(super) struct Run {
     stderr: CapturedStream,
     began: Instant,
     main_status: Option<i32>,
-    cause: Option<Ended>,
+    cause: Option<RunEnd>,
     peak_memory: u64,
     /// Memory that the last look at mappings found and that is resident for nobody.
     unseen_memory: u64,
@@ -119,8 +119,13 @@ pub(super) struct Run {
 
 impl Run {
     /// Prepares everything and forks.
-    pub(super) fn start(order: RunOrder, control: File, held: Held, prepared: &PreparedRun) -> Result<Self, Failure> {
-        let (order, Held { slot, group }) = (Rc::new(order), held);
+    pub(super) fn start(
+        order: RunOrder,
+        control: File,
+        held: HeldResources,
+        prepared: &PreparedRun,
+    ) -> Result<Self, Failure> {
+        let (order, HeldResources { slot, group }) = (Rc::new(order), held);
         sys::become_reaper().map_err(stage("become the reaper"))?;
         let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
         let trace = order.trace.clone().map(CString::new).transpose();
@@ -240,10 +245,10 @@ impl Run {
         // A process that the kernel holds is the host's matter; any other that did not end has caused this itself.
         self.blame_if(
             left.count > 0 && !left.held,
-            Ended::Violation { call: "none, but it left processes that do not end".into() },
+            RunEnd::Violation { call: "none, but it left processes that do not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
-        self.blame_if(out_of_memory, Ended::MemoryLimit);
+        self.blame_if(out_of_memory, RunEnd::MemoryLimit);
         let (cpu, largest) = sys::children_usage().map_err(stage("ask for the usage"))?;
         let report = Report {
             cause: self.cause.take(),
@@ -307,7 +312,7 @@ impl Run {
             }
             if now >= next_look || ready[5] {
                 self.reap();
-                self.look();
+                self.check_limits();
                 next_look = Instant::now() + TICK;
             }
             if now >= next_folder {
@@ -324,7 +329,7 @@ impl Run {
     }
 
     /// Notes the first cause.
-    fn blame_if(&mut self, condition: bool, cause: Ended) {
+    fn blame_if(&mut self, condition: bool, cause: RunEnd) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
@@ -334,7 +339,7 @@ impl Run {
     fn obey(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) => self.blame_if(true, Ended::Cancelled),
+            Ok(1) => self.blame_if(true, RunEnd::Cancelled),
             _ => self.orphaned = true,
         }
     }
@@ -406,7 +411,7 @@ impl Run {
         } else if executes {
             call.push_str(" (it started another program)");
         }
-        self.blame_if(true, Ended::Violation { call });
+        self.blame_if(true, RunEnd::Violation { call });
         Ok(())
     }
 
@@ -420,7 +425,7 @@ impl Run {
     }
 
     /// Looks at clocks and counters.
-    fn look(&mut self) {
+    fn check_limits(&mut self) {
         if self.main_status.is_some() {
             return;
         }
@@ -429,12 +434,12 @@ impl Run {
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
         // A bomb of processes passes both.
-        self.blame_if(usage.threads > u64::from(self.order.limits.processes), Ended::ProcessLimit);
-        self.blame_if(memory > self.order.limits.memory, Ended::MemoryLimit);
+        self.blame_if(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
+        self.blame_if(memory > self.order.limits.memory, RunEnd::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.blame_if(cpu > self.order.limits.cpu, Ended::CpuLimit);
-        self.blame_if(self.is_trace_over(), Ended::TraceLimit);
-        self.blame_if(self.began.elapsed() > self.order.limits.wall, Ended::WallLimit);
+        self.blame_if(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
+        self.blame_if(self.is_trace_over(), RunEnd::TraceLimit);
+        self.blame_if(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
     /// Returns whether the file at the trace's place is longer than a trace may be.
@@ -458,7 +463,7 @@ impl Run {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
         let over = self.over(&contents);
-        self.blame_if(over, Ended::FolderLimit);
+        self.blame_if(over, RunEnd::FolderLimit);
         if self.order.volatile && !self.can_hide_memory() {
             return;
         }
@@ -466,13 +471,13 @@ impl Run {
         let members = processes::members(self.child, self.has_children());
         let root = wire::path(&self.order.folder);
         let page_tables = self.order.sanitizers;
-        let held = sys::with_files_of(user, || holdings::of(&members, &root, self.order.tools, page_tables));
+        let held = sys::with_files_of(user, || holdings::measure(&members, &root, self.order.tools, page_tables));
         if !self.order.volatile {
             contents.bytes += held.nameless;
         }
         self.unseen_memory = held.memory;
         let over = self.over(&contents);
-        self.blame_if(over, Ended::FolderLimit);
+        self.blame_if(over, RunEnd::FolderLimit);
     }
 
     /// Returns whether there may be memory that is resident for nobody: files that are neither in the folder nor

@@ -20,7 +20,7 @@ use super::{volatile, walls};
 use crate::{
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
-    wire::{self, Failure, Raw, RunOrder, stage},
+    wire::{self, Failure, RawBytes, RunOrder, stage},
 };
 
 /// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
@@ -85,7 +85,7 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
 /// # Errors
 ///
 /// As for [`build`].
-pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(Raw, Vec<u8>)]) -> Result<(), Failure> {
+pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBytes, Vec<u8>)]) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user() != 0 {
         mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;

@@ -13,7 +13,7 @@ use std::{
 
 use rustix::io::Errno;
 
-use crate::wire::{self, Raw, RunOrder};
+use crate::wire::{self, RawBytes, RunOrder};
 
 /// A little more than the limit, so that a program that passes it is seen to.
 const SPARE_BYTES: u64 = 1 << 20;
@@ -51,7 +51,7 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
 /// # Errors
 ///
 /// Also for names that lead elsewhere.
-pub(super) fn add(folder: &Path, files: &[(Raw, Vec<u8>)]) -> io::Result<()> {
+pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()> {
     for (name, content) in files {
         let plain = wire::plain_name(name).ok_or(io::ErrorKind::InvalidInput)?;
         std::fs::write(folder.join(plain), content)?;

@@ -56,7 +56,7 @@ pub(super) struct TimeShares {
 }
 
 /// Processor times of a process and of the children that it has waited for.
-fn of_process(name: &str) -> (u64, u64) {
+fn read_process(name: &str) -> (u64, u64) {
     let text = fs::read_to_string(format!("/proc/{name}/stat")).unwrap_or_default();
     let fields: Vec<u64> =
         text.rsplit(')').next().unwrap_or_default().split(' ').map(|field| field.parse().unwrap_or(0)).collect();
@@ -78,8 +78,8 @@ impl Spent {
             .collect();
         let at = |index: usize| fields.get(index).copied().unwrap_or(0);
         let (idle, waiting, all) = (at(3), at(4), fields.iter().take(8).sum::<u64>());
-        let (own, graders) = of_process(&server.to_string());
-        Self { server: own, graders, clients: of_process("self").0, busy: all - idle - waiting, waiting, all }
+        let (own, graders) = read_process(&server.to_string());
+        Self { server: own, graders, clients: read_process("self").0, busy: all - idle - waiting, waiting, all }
     }
 
     pub(super) fn since(self, before: Self) -> TimeShares {

@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 
 /// The submissions that are graded again.
 #[derive(Serialize, ToSchema)]
-pub struct Again {
+pub struct RegradeOrder {
     /// How many submissions.
     pub jobs: i64,
 }
@@ -23,7 +23,7 @@ impl Staff {
     ///
     /// # Errors
     /// When there is none of this number, it is being graded, or its bytes are not kept any longer.
-    pub async fn grade_again(&self, id: i64) -> Result<Again, Problem> {
+    pub async fn grade_again(&self, id: i64) -> Result<RegradeOrder, Problem> {
         let submission = self.submission(id).await?;
         let assignment = self.assignment(&submission.assignment).await?;
         ensure(submission.removed_at.is_none(), Problem::removed())?;
@@ -37,7 +37,7 @@ impl Staff {
         let entry = self.entry("graded again", Some(assignment.id), "one submission");
         view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
         self.app.0.notifier.commit(transaction).await?;
-        Ok(Again { jobs })
+        Ok(RegradeOrder { jobs })
     }
 
     /// Grades all submissions of an assignment, or of all assignments of the course, on which the grader failed once
@@ -45,7 +45,7 @@ impl Staff {
     ///
     /// # Errors
     /// When there is no such assignment.
-    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<Again, Problem> {
+    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<RegradeOrder, Problem> {
         let assignments = match assignment {
             Some(slug) => vec![self.assignment(slug).await?],
             None => self.assignments().await?,
@@ -68,6 +68,6 @@ impl Staff {
             self.app.0.notifier.commit(transaction).await?;
             jobs += found;
         }
-        Ok(Again { jobs })
+        Ok(RegradeOrder { jobs })
     }
 }

@@ -12,7 +12,7 @@ use crate::{
 
 /// The choices.
 #[derive(Debug, Clone)]
-pub enum Choice {
+pub enum LinkTarget {
     /// The course, of those that one teaches, or a new one.
     Course {
         /// The platform.
@@ -37,7 +37,7 @@ pub enum Choice {
 
 /// The next step after an assignment was chosen.
 #[derive(Debug, Clone)]
-pub enum Chosen {
+pub enum LinkStep {
     /// Go to the assignment.
     Assignment(String),
     /// Send this to the platform: address, origins, and token.
@@ -56,7 +56,7 @@ impl Person {
     ///
     /// # Errors
     /// When there is nothing of this secret for this person.
-    pub async fn choice(&self, secret: &str) -> Result<Choice, Problem> {
+    pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
         let Some(place) = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await? else {
@@ -68,7 +68,7 @@ impl Person {
                 JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
                 ORDER BY course.slug";
             let courses = transaction.all(statement, values![self.account.id]).await?;
-            return Ok(Choice::Course {
+            return Ok(LinkTarget::Course {
                 platform: pending.platform.name,
                 title: title.trim().to_owned(),
                 slug,
@@ -78,7 +78,7 @@ impl Person {
         let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
             WHERE course = ? ORDER BY id";
         let assignments = transaction.all(statement, values![place.course]).await?;
-        Ok(Choice::Assignment {
+        Ok(LinkTarget::Assignment {
             course: Course { slug: place.slug, title: place.title },
             title: pending.arrival.resource.and_then(|resource| resource.title),
             assignments,
@@ -130,7 +130,7 @@ impl Person {
     ///
     /// # Errors
     /// When this person does not teach the course, or it has no such assignment.
-    pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<Chosen, Problem> {
+    pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<LinkStep, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
         let place = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?;
@@ -152,7 +152,7 @@ impl Person {
             let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
             launch::columns(&mut transaction, link, arrival).await?;
             transaction.commit().await?;
-            return Ok(Chosen::Assignment(format!("/c/{}/a/{}", place.slug, assignment.slug)));
+            return Ok(LinkStep::Assignment(format!("/c/{}/a/{}", place.slug, assignment.slug)));
         };
         transaction.commit().await?;
         let over_http = self.app.lti.over_http();
@@ -162,7 +162,7 @@ impl Person {
         let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
         let token = lti::deep_linking_response(&self.app.0.database, &pending.platform, arrival, &launch, item).await?;
         let origins = pending.platform.origins(over_http);
-        Ok(Chosen::Answer { address: address.into(), origins, token })
+        Ok(LinkStep::Answer { address: address.into(), origins, token })
     }
 }
 

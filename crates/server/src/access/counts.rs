@@ -19,7 +19,7 @@ pub struct Counts(Mutex<Option<(Instant, Metrics)>>);
 
 impl Counts {
     /// Returns the numbers of this moment, or of a moment ago.
-    pub(super) async fn of(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
+    pub(super) async fn read(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()
             && at.elapsed() < FRESH

@@ -97,7 +97,7 @@ pub(super) enum Way {
 
 /// A session as a request shows it.
 #[derive(Debug, Clone)]
-pub(super) struct Seen {
+pub(super) struct SessionState {
     /// Whether it was begun by a link that a course's staff made.
     pub(super) is_vouched: bool,
     /// Whether it was begun by a token.
@@ -129,7 +129,7 @@ pub(super) async fn account_of_token(transaction: &mut Transaction, token: &str)
 pub(super) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
-) -> Result<Option<(Account, Seen)>, Problem> {
+) -> Result<Option<(Account, SessionState)>, Problem> {
     let statement = "SELECT account.id, account.login, account.name, account.is_admin, session.vouched,
            session.token, session.created_at, session.seen_at, {now} AS now
         FROM session JOIN account ON account.id = session.account
@@ -139,7 +139,7 @@ pub(super) async fn account_of_session(
     let row = transaction.row(statement, values![digest(session)]).await?;
     let Some(row) = row else { return Ok(None) };
     let now = row.int("now")?;
-    let seen = Seen {
+    let seen = SessionState {
         is_vouched: row.flag("vouched")?,
         is_by_token: row.maybe_int("token")?.is_some(),
         is_recent: now - row.int("created_at")? < RECENT,

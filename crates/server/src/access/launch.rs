@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
-    lti::{Arrival, LtiPerson, LtiRole, Message, Platform, Refused, score},
+    lti::{Arrival, LtiPerson, LtiRole, Message, Platform, Rejection, score},
     problem::{Problem, ensure},
     secret::{hex, random_hex},
     values,
@@ -56,15 +56,15 @@ pub struct LoginAnswer {
 
 /// Where somebody is to go, signed in.
 #[derive(Debug, Clone)]
-pub struct Launched {
+pub struct LaunchTarget {
     /// The person's session.
     pub session: NewSecret,
     /// A path of this service.
     pub to: String,
 }
 
-impl From<Refused> for Problem {
-    fn from(refused: Refused) -> Self {
+impl From<Rejection> for Problem {
+    fn from(refused: Rejection) -> Self {
         Self::refused_launch(refused.to_string())
     }
 }
@@ -149,7 +149,7 @@ impl Visitor {
     ///
     /// # Errors
     /// When the answer is none of ours, none of the platform's, or nobody may come by it.
-    pub async fn launch(&self, state: &str, token: &str) -> Result<Launched, Problem> {
+    pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
         let key = self.app.signing_key().await?;
         let (login, platform) = self.login(&key, state).await?;
         let nonce = identity::digest(&nonce(&key, state));
@@ -268,7 +268,7 @@ async fn arrive(
     platform: &Platform,
     message: &Message,
     role: LtiRole,
-) -> Result<Launched, Problem> {
+) -> Result<LaunchTarget, Problem> {
     let arrival = &message.arrival;
     let staff = role == LtiRole::Staff;
     let Some(Place { id, course, slug, .. }) = place(transaction, platform.id, arrival).await? else {
@@ -301,7 +301,7 @@ async fn arrive(
                 score::arrived(transaction, link, account).await?;
             }
             let session = identity::begin_session(transaction, account, Way::Own).await?;
-            Ok(Launched { session, to: format!("/c/{slug}/a/{assignment}") })
+            Ok(LaunchTarget { session, to: format!("/c/{slug}/a/{assignment}") })
         }
         None if staff => choose(transaction, platform, arrival, account).await,
         None => Err(Problem::refused_launch("no assignment was chosen for this link yet")),
@@ -349,7 +349,7 @@ async fn choose(
     platform: &Platform,
     arrival: &Arrival,
     account: i64,
-) -> Result<Launched, Problem> {
+) -> Result<LaunchTarget, Problem> {
     let secret = NewSecret::new("");
     let text = serde_json::to_string(arrival).map_err(|_| Problem::fault())?;
     let expired = "DELETE FROM platform_choice
@@ -363,7 +363,7 @@ async fn choose(
         identity::end_all(transaction, account).await?;
     }
     let session = identity::begin_session(transaction, account, Way::Own).await?;
-    Ok(Launched { session, to: format!("/lti/choose/{}", secret.reveal()) })
+    Ok(LaunchTarget { session, to: format!("/lti/choose/{}", secret.reveal()) })
 }
 
 async fn account(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {

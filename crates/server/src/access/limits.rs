@@ -130,7 +130,7 @@ impl Member {
         let [student, course, server] = self.shares(&mut transaction).await?;
         let shares = [("you", student, false), ("this course", course, self.is_staff), ("this server", server, false)];
         let told = shares.into_iter().filter(|(_, kept, always)| kept.is_nearly_all() || *always);
-        Ok(told.map(|(whose, kept, _)| kept.words(whose)).collect())
+        Ok(told.map(|(whose, kept, _)| kept.describe(whose)).collect())
     }
 
     /// Checks that this many more bytes may be kept.
@@ -155,7 +155,7 @@ impl RoomShare {
         self.most > 0 && self.bytes >= self.most / 5 * 4
     }
 
-    fn words(self, whose: &str) -> String {
+    fn describe(self, whose: &str) -> String {
         let kept = format!("Uploads and reports kept of {whose}: {} MiB", self.bytes.div_ceil(MIB));
         match self.most {
             0 => kept + ".",

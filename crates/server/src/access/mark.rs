@@ -16,7 +16,7 @@ const LONGEST: usize = 2000;
 
 /// A student's work on an assignment.
 #[derive(Debug, Clone)]
-pub struct Work {
+pub struct StudentHistory {
     /// The name of their account.
     pub login: String,
     /// The student's name.
@@ -145,10 +145,10 @@ impl Staff {
     ///
     /// # Errors
     /// When they are no member and handed nothing in.
-    pub async fn work(&self, slug: &str, login: &str) -> Result<Work, Problem> {
+    pub async fn student_history(&self, slug: &str, login: &str) -> Result<StudentHistory, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;
-        Ok(Work {
+        Ok(StudentHistory {
             login: login.to_owned(),
             name: account.text("name")?,
             submissions: view::submissions_of(&mut transaction, assignment.id, account.int("id")?).await?,

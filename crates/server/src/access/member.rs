@@ -6,8 +6,8 @@ use super::{
 use crate::{
     db::{DbError, Transaction},
     problem::Problem,
-    shown::{self, Shown},
-    store::{Artifact, Digest, Opened},
+    shown::{self, ShownGrade},
+    store::{Artifact, Digest, OpenArtefact},
     task::OutputFile,
     values,
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
@@ -115,9 +115,9 @@ impl Member {
         // Of what older versions graded nobody has looked yet.
         let kept = match grade.outcome.shown.take() {
             Some(kept) => kept,
-            None => shown::of_outcome(&self.app.0.store, &grade.outcome.files).await?.shown,
+            None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
-        if let Some(shown) = Shown::read(&kept) {
+        if let Some(shown) = ShownGrade::read(&kept) {
             shown.cover(&mut grade.outcome, SHOWN);
             grade.created_at = shown::hour(grade.created_at);
             submission.is_withheld = true;
@@ -191,7 +191,7 @@ impl Member {
     ///
     /// # Errors
     /// When the store fails.
-    pub async fn open(&self, artifact: &Artifact) -> Result<Opened, Problem> {
+    pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtefact, Problem> {
         Ok(self.app.0.store.open(&artifact.digest).await?)
     }
 

@@ -36,15 +36,15 @@ mod view;
 mod visitor;
 
 pub use admin::Admin;
-pub use again::Again;
-pub use choice::{Choice, Chosen};
+pub use again::RegradeOrder;
+pub use choice::{LinkStep, LinkTarget};
 pub use counts::Counts;
 pub use failed::{AttemptChange, FailedScenes};
 pub use identity::{Link, NewSecret, NewToken, TokenInfo};
 pub use import::MemberLine;
-pub use launch::{Launched, LoginAnswer, LoginRequest};
+pub use launch::{LaunchTarget, LoginAnswer, LoginRequest};
 pub use limits::{Transfer, TransferLimits};
-pub use mark::{Overview, Request, Work};
+pub use mark::{Overview, Request, StudentHistory};
 pub use member::Member;
 pub use members::MemberInfo;
 pub use password::Passwords;
@@ -56,9 +56,9 @@ pub use settings::Settings;
 pub(crate) use settings::{moment, moment_schema};
 pub use staff::{AssignmentChange, Staff};
 pub use standings::{ShortStanding, Standing};
-pub use submit::{Accepted, Upload};
+pub use submit::{SubmitResult, Upload};
 pub use suites::{Suites, is_file_name};
-pub use view::{Account, Assignment, Course, Event, Graded, History, Mark, Queue, QueueWorker, Submission};
+pub use view::{Account, Assignment, Course, Event, History, Mark, Queue, QueueWorker, ResultView, Submission};
 pub use visitor::{Secrets, Visitor};
 
 use crate::{

@@ -1,7 +1,7 @@
 //! Somebody who is signed in.
 use super::{
     App,
-    identity::{self, NewToken, Seen, TokenInfo, Way},
+    identity::{self, NewToken, SessionState, TokenInfo, Way},
     view::{Account, Course},
 };
 use crate::{
@@ -27,7 +27,7 @@ pub struct CourseOf {
 pub struct Person {
     pub(crate) account: Account,
     /// The browser's session; nothing where a token asks.
-    pub(super) session: Option<Seen>,
+    pub(super) session: Option<SessionState>,
     pub(super) address: Option<IpAddr>,
     pub(crate) app: App,
 }
@@ -39,13 +39,13 @@ impl Person {
     }
 
     /// Returns the session, where it is the person at a browser: what a token can do, ends with the token.
-    pub(super) fn at_browser(&self) -> Result<&Seen, Problem> {
+    pub(super) fn at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
     }
 
     /// Returns the session if they signed in lately: anybody who finds an open browser makes no further ways in.
-    pub(super) fn lately_at_browser(&self) -> Result<&Seen, Problem> {
+    pub(super) fn lately_at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.at_browser()?;
         match session.is_recent {
             true => Ok(session),

@@ -4,10 +4,10 @@ use super::App;
 use crate::{
     problem::{Problem, ensure},
     queue::{Lease, Progress},
-    store::{Artifact, Digest, Opened},
+    store::{Artifact, Digest, OpenArtefact},
     task::{Outcome, Suite, Task},
     values,
-    wire::{Claimed, Manners},
+    wire::{ClaimedJob, Manners},
     worker::{JobSource, LocalSource, REPORTS, SourceError},
 };
 use std::path::Path;
@@ -67,7 +67,7 @@ impl Remote {
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn claim(&self) -> Result<Option<Claimed>, Problem> {
+    pub async fn claim(&self) -> Result<Option<ClaimedJob>, Problem> {
         Ok(self.source().claim().await?)
     }
 
@@ -179,7 +179,7 @@ impl Remote {
     ///
     /// # Errors
     /// When the job is not its own (any more), or the artifact is not the job's.
-    pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<Opened, Problem> {
+    pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtefact, Problem> {
         let task = self.held(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
         ensure(task.submission.artifact.digest == *digest || suite, Problem::not_found("artifact of this job"))?;

@@ -1,7 +1,7 @@
 //! The asker of a request, told from the secrets that it shows.
 use super::{
     Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
-    identity::{self, Seen},
+    identity::{self, SessionState},
     view::Account,
 };
 use crate::{
@@ -13,7 +13,7 @@ use std::time::Instant;
 
 impl App {
     /// Returns the owner of these secrets.
-    async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<Seen>), Problem> {
+    async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<SessionState>), Problem> {
         let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {
                 let mut transaction = self.0.database.read().await?;

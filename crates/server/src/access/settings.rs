@@ -251,7 +251,7 @@ impl Settings {
     /// Returns the forms that are taken, in words.
     pub fn taken(&self) -> String {
         let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
-        taken.map(Form::words).collect::<Vec<_>>().join(" or ")
+        taken.map(Form::describe).collect::<Vec<_>>().join(" or ")
     }
 
     /// Returns whether this may be handed in.

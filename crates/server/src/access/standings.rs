@@ -75,7 +75,7 @@ const MANY: usize = 32;
 const PAGE: usize = 500;
 
 impl SharedStandings {
-    fn of(&self, assignment: i64) -> Arc<SharedAnswer> {
+    fn answer_for(&self, assignment: i64) -> Arc<SharedAnswer> {
         let mut answers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if answers.len() > MANY {
             answers.retain(|_, answer| Arc::strong_count(answer) > 1);
@@ -91,7 +91,7 @@ impl Staff {
     /// When the database does not answer.
     pub async fn short_standings(&self, assignment: &Assignment) -> Result<Arc<Vec<ShortStanding>>, Problem> {
         let asked = Instant::now();
-        let answer = self.app.0.standings.of(assignment.id);
+        let answer = self.app.0.standings.answer_for(assignment.id);
         let mut last = answer.lock().await;
         // One that was begun since is as new as any.
         if let Some((_, standings)) = last.as_ref().filter(|(began, _)| *began >= asked) {
@@ -145,7 +145,12 @@ struct Best {
 
 impl Best {
     /// Returns the best of attempts, oldest first: `ID MOMENT POINTS`, with commas between them.
-    fn of(list: &str, by_hand: &HashMap<i64, String>, policy: &LatePolicy, own_due: Option<i64>) -> Option<Self> {
+    fn from_list(
+        list: &str,
+        by_hand: &HashMap<i64, String>,
+        policy: &LatePolicy,
+        own_due: Option<i64>,
+    ) -> Option<Self> {
         let mut attempts: Vec<(i64, i64, &str)> = list
             .split(',')
             .filter_map(|attempt| {
@@ -201,7 +206,7 @@ async fn read(
     let rows = transaction.rows(statement, values![id]).await?;
     let attempts: HashMap<i64, (usize, Option<Best>)> = map(&rows, |row| {
         let account = row.int("account")?;
-        let best = Best::of(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
+        let best = Best::from_list(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
     })?;
     let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
@@ -243,7 +248,7 @@ mod tests {
     fn the_best_attempt_counts_and_the_later_of_equals() {
         let by_hand = HashMap::from([(4, "9".to_owned())]);
         let policy = LatePolicy { due_at: Some(100), late_days: 1, late_percent: 50, ..LatePolicy::default() };
-        let best = |list: &str| Best::of(list, &by_hand, &policy, None).map(|best| (best.id, best.points));
+        let best = |list: &str| Best::from_list(list, &by_hand, &policy, None).map(|best| (best.id, best.points));
         let points = |text: &str| Some(text.to_owned());
         assert_eq!(best("2 50 7.5,1 50 7.5"), Some((2, points("7.5"))), "in whatever order they come");
         assert_eq!(best("1 50 8,2 50 7,3 50 -"), Some((1, points("8"))), "one that waits counts for nothing yet");

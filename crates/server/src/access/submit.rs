@@ -42,7 +42,7 @@ pub struct Upload<'a> {
 
 /// The outcome.
 #[derive(Debug, Clone)]
-pub struct Accepted {
+pub struct SubmitResult {
     /// The submission.
     pub submission: Submission,
     /// Whether it had been handed in before, by the same key.
@@ -55,10 +55,10 @@ impl Member {
     /// # Errors
     /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same
     /// key finds it.
-    pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<Accepted, Problem> {
+    pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
-            let (taken, found) = (assignment.settings.taken(), upload.form.words());
+            let (taken, found) = (assignment.settings.taken(), upload.form.describe());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
         // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
@@ -68,7 +68,7 @@ impl Member {
         let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
-            return Ok(Accepted { submission, repeated: true });
+            return Ok(SubmitResult { submission, repeated: true });
         }
         drop(transaction);
         let artifact = self.app.0.store.put_file(upload.file).await?;
@@ -76,11 +76,11 @@ impl Member {
         // One after another for each student: numbers are given out here, and limits counted.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
-            return Ok(Accepted { submission, repeated: true });
+            return Ok(SubmitResult { submission, repeated: true });
         }
         let submission = self.write(&mut transaction, &assignment, upload, &artifact).await?;
         self.app.0.notifier.commit(transaction).await?;
-        Ok(Accepted { submission: self.submission(submission).await?, repeated: false })
+        Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
     }
 
     /// Returns when an upload came whose request is known since then, by the database's clock; and whether it may be

@@ -69,9 +69,9 @@ impl Suites {
         // The version stands behind an `@`.
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
         match () {
-            () if !is_name => Err(Problem::invalid(format!("suite is {}", self.words()))),
+            () if !is_name => Err(Problem::invalid(format!("suite is {}", self.describe()))),
             () if self.names.is_empty() || self.names.iter().any(|known| known == name) => Ok(()),
-            () => Err(Problem::conflict(format!("suite is {}", self.words()), "name one that is there")),
+            () => Err(Problem::conflict(format!("suite is {}", self.describe()), "name one that is there")),
         }
     }
 
@@ -81,7 +81,7 @@ impl Suites {
     }
 
     /// Returns which names there are, in words.
-    pub fn words(&self) -> String {
+    pub fn describe(&self) -> String {
         match self.names.as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),
             [only] => only.clone(),
@@ -98,7 +98,7 @@ mod tests {
     fn names_are_those_of_the_graders_list() {
         let json = br#"{"schema": 1, "suites": [{"name": "new", "title": "New", "default": false}, {"name": "old", "title": "Old", "default": true}]}"#;
         let suites = Suites::read(json).expect("a list");
-        assert_eq!(suites.words(), "new or old");
+        assert_eq!(suites.describe(), "new or old");
         assert_eq!((suites.or_default("").as_str(), suites.or_default("new").as_str()), ("old", "new"));
         let json = br#"{"schema": 2, "suites": [{"name": "m@2", "suite": "m", "default": true}, {"name": "m@1", "suite": "m", "default": false}]}"#;
         let versions = Suites::read(json).expect("a list");

@@ -3,9 +3,9 @@ use super::{App, Settings};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
-    late::Late,
+    late::Lateness,
     queue::{self, Lane, Progress},
-    shown::{Shown, hour},
+    shown::{ShownGrade, hour},
     store::Artifact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
@@ -98,10 +98,10 @@ pub struct Submission {
     pub progress: Option<Progress>,
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub grade: Option<Graded>,
+    pub grade: Option<ResultView>,
     /// How late it came, where that costs points; staff's points cost nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub late: Option<Late>,
+    pub late: Option<Lateness>,
     /// The words of staff about it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
@@ -144,7 +144,7 @@ pub struct Mark {
 
 /// A result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct Graded {
+pub struct ResultView {
     #[serde(skip)]
     pub(crate) result: i64,
     /// The result.
@@ -154,7 +154,7 @@ pub struct Graded {
     pub created_at: i64,
 }
 
-impl Deref for Graded {
+impl Deref for ResultView {
     type Target = Outcome;
 
     fn deref(&self) -> &Outcome {
@@ -287,13 +287,13 @@ macro_rules! submissions {
     };
 }
 
-fn read_grade(row: &Row, result: i64) -> Result<Graded, DbError> {
+fn read_grade(row: &Row, result: i64) -> Result<ResultView, DbError> {
     let outcome = read_row!(row => Outcome {
         verdict, code, points, max_points, summary, version, grader, seconds, shown;
         files: Vec::new(),
         failed: None,
     });
-    Ok(Graded { result, outcome, created_at: row.int("graded_at")? })
+    Ok(ResultView { result, outcome, created_at: row.int("graded_at")? })
 }
 
 impl FromRow for Submission {
@@ -308,7 +308,7 @@ impl FromRow for Submission {
             grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
             is_withheld: false,
             is_published: row.maybe_int("published_at")?.is_some(),
-            late: Late::of(row)?,
+            late: Lateness::from_row(row)?,
             mark: row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?,
         });
         submission.overrule();
@@ -416,7 +416,7 @@ pub(super) async fn history(
     let rows = transaction.rows(statement, values![submission]).await?;
     let shown = |row: &Row, column: &str| -> Result<Option<(String, Option<String>)>, DbError> {
         let text = row.maybe_text(column)?.filter(|_| withheld);
-        Ok(text.as_deref().and_then(Shown::read).map(Shown::line))
+        Ok(text.as_deref().and_then(ShownGrade::read).map(ShownGrade::line))
     };
     let mut given = None;
     let read = |row: &Row| {

@@ -109,7 +109,7 @@ impl Visitor {
     /// When they can't be written as text.
     pub async fn metrics(&self) -> Result<String, Problem> {
         let parts = &self.app.0;
-        let queue = parts.counts.of(&parts.database, &parts.policy).await;
+        let queue = parts.counts.read(&parts.database, &parts.policy).await;
         let queue = queue.inspect_err(|error| tracing::warn!(%error, "the queue can't be counted")).ok();
         parts.instruments.show(&parts.storage, queue.as_ref()).map_err(|error| {
             tracing::error!(%error, "the metrics can't be written");

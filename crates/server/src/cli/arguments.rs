@@ -25,20 +25,20 @@ pub(super) enum LogFormat {
 
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
-    Serve(Serve),
+    Serve(ServiceArguments),
     Worker(WorkerArguments),
-    AdminLink(AdminLink),
-    Backup(Backup),
-    Restore(Restore),
-    Health(Health),
-    LookThrough(LookThrough),
+    AdminLink(AdminLinkArguments),
+    Backup(BackupArguments),
+    Restore(RestoreArguments),
+    Health(HealthArguments),
+    LookThrough(LookThroughArguments),
     /// Prints the description of the API (OpenAPI).
     Openapi,
 }
 
 /// Where everything is kept.
 #[derive(Debug, Args)]
-pub(super) struct Place {
+pub(super) struct StorageArguments {
     /// The folder of the database, the artifacts and the jobs' working folders.
     #[arg(long, value_name = "DIR", default_value = "fosssim-data", env = "FOSSSIM_DATA")]
     pub(super) data: PathBuf,
@@ -53,7 +53,7 @@ pub(super) struct Place {
 
 /// How workers work.
 #[derive(Debug, Args)]
-pub(super) struct Work {
+pub(super) struct WorkloadArguments {
     /// Scenes of one grading at one time.
     #[arg(long, value_name = "N", default_value = "1")]
     pub(super) threads: NonZeroUsize,
@@ -70,9 +70,9 @@ pub(super) struct Work {
 
 /// Serves: takes submissions, shows grades, and grades with workers of its own.
 #[derive(Debug, Args)]
-pub(super) struct Serve {
+pub(super) struct ServiceArguments {
     #[command(flatten)]
-    pub(super) place: Place,
+    pub(super) place: StorageArguments,
     /// Where to listen. Only this machine by default: put a proxy with HTTPS in front for others.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
     pub(super) listen: SocketAddr,
@@ -123,7 +123,7 @@ pub(super) struct Serve {
     #[arg(long)]
     pub(super) example: bool,
     #[command(flatten)]
-    pub(super) work: Work,
+    pub(super) work: WorkloadArguments,
 }
 
 /// Returns the scheme and host of an address that people type.
@@ -138,9 +138,9 @@ fn public_url(text: &str) -> Result<String, String> {
 
 /// Prints a link that signs an administrator in once: the way back in for who lost theirs.
 #[derive(Debug, Args)]
-pub(super) struct AdminLink {
+pub(super) struct AdminLinkArguments {
     #[command(flatten)]
-    pub(super) place: Place,
+    pub(super) place: StorageArguments,
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
@@ -153,9 +153,9 @@ pub(super) struct AdminLink {
 /// Copies the database and all uploads and reports into a new folder, while the server runs. PostgreSQL is copied by
 /// pg_dump, which has to be installed.
 #[derive(Debug, Args)]
-pub(super) struct Backup {
+pub(super) struct BackupArguments {
     #[command(flatten)]
-    pub(super) place: Place,
+    pub(super) place: StorageArguments,
     /// The folder to make.
     #[arg(value_name = "FOLDER")]
     pub(super) output: PathBuf,
@@ -163,9 +163,9 @@ pub(super) struct Backup {
 
 /// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty.
 #[derive(Debug, Args)]
-pub(super) struct Restore {
+pub(super) struct RestoreArguments {
     #[command(flatten)]
-    pub(super) place: Place,
+    pub(super) place: StorageArguments,
     /// The folder that `backup` made.
     #[arg(value_name = "FOLDER")]
     pub(super) backup: PathBuf,
@@ -173,7 +173,7 @@ pub(super) struct Restore {
 
 /// Says by the exit code whether a server, by its address, or a worker, by its data folder, is well: for probes.
 #[derive(Debug, Args)]
-pub(super) struct Health {
+pub(super) struct HealthArguments {
     /// The server's address.
     #[arg(long, value_name = "URL", value_parser = public_url)]
     pub(super) server: Option<String>,
@@ -185,7 +185,7 @@ pub(super) struct Health {
 /// Looks through an upload; the server calls this for each archive.
 #[derive(Debug, Args)]
 #[command(hide = true)]
-pub(super) struct LookThrough {
+pub(super) struct LookThroughArguments {
     #[arg(long)]
     pub(super) form: Option<String>,
     #[arg(long, default_value = "")]
@@ -201,9 +201,9 @@ pub(super) struct LookThrough {
 #[derive(Debug, Args)]
 pub(super) struct WorkerArguments {
     #[command(flatten)]
-    pub(super) place: Place,
+    pub(super) place: StorageArguments,
     #[command(flatten)]
-    pub(super) work: Work,
+    pub(super) work: WorkloadArguments,
     /// Gradings at one time. One per core by default.
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,

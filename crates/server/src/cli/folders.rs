@@ -1,5 +1,5 @@
 //! The places in the data folder.
-use super::arguments::Place;
+use super::arguments::StorageArguments;
 use crate::{
     db::{Address, Database},
     store::Store,
@@ -28,7 +28,7 @@ pub(super) struct ServiceFolders {
 
 impl ServiceFolders {
     /// Finds the data folder of a server that was here; makes none.
-    pub(super) fn find(place: &Place) -> Result<Self> {
+    pub(super) fn find(place: &StorageArguments) -> Result<Self> {
         if !place.data.exists() {
             return Err(missing("data folder", &place.data));
         }
@@ -36,7 +36,7 @@ impl ServiceFolders {
     }
 
     /// Finds the folder for commands that need the database only, which may be elsewhere.
-    pub(super) fn find_database(place: &Place) -> Result<Self> {
+    pub(super) fn find_database(place: &StorageArguments) -> Result<Self> {
         if place.database.is_none() && !place.data.exists() {
             return Err(missing("data folder", &place.data));
         }
@@ -47,7 +47,7 @@ impl ServiceFolders {
     }
 
     /// Makes the data folder, or checks that it is the server's alone.
-    pub(super) fn open(place: &Place) -> Result<Self> {
+    pub(super) fn open(place: &StorageArguments) -> Result<Self> {
         let data = std::path::absolute(&place.data)?;
         let data = data.as_path();
         if !data.exists() {
@@ -77,7 +77,7 @@ impl ServiceFolders {
     }
 
     /// Returns the store that was asked for, or the one in the data folder.
-    pub(super) fn store(&self, place: &Place) -> Result<Store> {
+    pub(super) fn store(&self, place: &StorageArguments) -> Result<Store> {
         match &place.store {
             Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
             None => Ok(Store::folder(&self.data.join("store"))?),
@@ -104,19 +104,19 @@ impl ServiceFolders {
     }
 
     /// Opens the database that was asked for, or the one in the data folder.
-    pub(super) async fn open_database(&self, place: &Place) -> Result<(Database, Address)> {
+    pub(super) async fn open_database(&self, place: &StorageArguments) -> Result<(Database, Address)> {
         let address = self.database(place);
         let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
         Ok((database, address))
     }
 
     /// Returns the database that was asked for, or the one in the data folder.
-    pub(super) fn database(&self, place: &Place) -> Address {
+    pub(super) fn database(&self, place: &StorageArguments) -> Address {
         database(place, &self.data)
     }
 }
 
-fn database(place: &Place, data: &Path) -> Address {
+fn database(place: &StorageArguments, data: &Path) -> Address {
     place.database.clone().unwrap_or_else(|| Address::Sqlite(data.join("fosssim.db")))
 }
 

@@ -1,13 +1,13 @@
 //! `health`: whether a server or a worker is well, by the exit code: for probes of containers, which have no other
 //! tool.
-use super::{arguments::Health, heartbeat};
+use super::{arguments::HealthArguments, heartbeat};
 use std::time::Duration;
 
 /// How long the server may take.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Returns whether it is.
-pub(super) fn run(arguments: &Health) -> bool {
+pub(super) fn run(arguments: &HealthArguments) -> bool {
     let Some(server) = &arguments.server else {
         let alive = heartbeat::is_alive(&arguments.data);
         match alive {

@@ -1,9 +1,9 @@
 //! `serve`: the server, with workers of its own.
 use super::{
-    arguments::{AdminLink, Serve},
+    arguments::{AdminLinkArguments, ServiceArguments},
     folders::ServiceFolders,
     heartbeat, until_signalled,
-    worker::{Local, grader, policy},
+    worker::{LocalWorkers, grader, policy},
 };
 use crate::{
     access::{App, Options, Passwords, Suites, TransferLimits},
@@ -38,7 +38,7 @@ const ANSWER: Duration = Duration::from_secs(20);
 /// How often the server looks for what is not kept any longer.
 const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
 
-pub(super) async fn run(arguments: &Serve) -> Result<()> {
+pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let stop = until_signalled()?;
     // First of all: a server that can't listen leaves nothing behind.
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
@@ -89,7 +89,8 @@ pub(super) async fn run(arguments: &Serve) -> Result<()> {
     };
     let grader = slots.map(|_| grader(arguments.work.grader.as_deref())).transpose()?;
     let working = grader.map(|grader| {
-        let local = Local { folders: folders.clone(), database: database.clone(), store, notifier, policy, grader };
+        let local =
+            LocalWorkers { folders: folders.clone(), database: database.clone(), store, notifier, policy, grader };
         let stop = stop.clone();
         async move { local.work(&arguments.work, slots, None, stop).await }
     });
@@ -211,7 +212,7 @@ async fn copy_before(database: &Database, backups: &Path, version: i64) -> Resul
     Ok(copy)
 }
 
-pub(super) async fn admin_link(arguments: &AdminLink) -> Result<()> {
+pub(super) async fn admin_link(arguments: &AdminLinkArguments) -> Result<()> {
     let folders = ServiceFolders::find(&arguments.place)?;
     let (database, _) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;

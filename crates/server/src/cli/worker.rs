@@ -1,6 +1,6 @@
 //! `worker`: grades what waits in the queue.
 use super::{
-    arguments::{Work, WorkerArguments},
+    arguments::{WorkerArguments, WorkloadArguments},
     folders::ServiceFolders,
     heartbeat, until_signalled,
 };
@@ -36,7 +36,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     }
     let store = folders.store(&arguments.place)?;
     let notifier = Notifier::default();
-    let local = Local {
+    let local = LocalWorkers {
         folders,
         database: database.clone(),
         store,
@@ -92,7 +92,7 @@ fn slots(slots: Option<NonZeroUsize>) -> usize {
 }
 
 /// Returns the queue's patience as the arguments have it.
-pub(super) fn policy(work: &Work) -> QueuePolicy {
+pub(super) fn policy(work: &WorkloadArguments) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
@@ -110,7 +110,7 @@ pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
 }
 
 /// Workers that hold the database themselves.
-pub(super) struct Local {
+pub(super) struct LocalWorkers {
     pub(super) folders: ServiceFolders,
     pub(super) database: Database,
     pub(super) store: Store,
@@ -119,11 +119,11 @@ pub(super) struct Local {
     pub(super) grader: PathBuf,
 }
 
-impl Local {
+impl LocalWorkers {
     /// Works until `stop` is cancelled.
     pub(super) async fn work(
         &self,
-        work: &Work,
+        work: &WorkloadArguments,
         slots: Option<NonZeroUsize>,
         name: Option<&str>,
         stop: CancellationToken,

@@ -19,7 +19,7 @@ const OLDEST: u64 = 3600;
 
 /// Why a message is not believed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
-pub enum Refused {
+pub enum Rejection {
     /// The message is no signed message, or signed by another algorithm than RS256.
     #[error("the message is not signed by RS256 with a named key")]
     Form,
@@ -198,57 +198,60 @@ struct Claims {
 }
 
 /// Returns the name of the key that a message says it is signed with.
-pub(super) fn key_of(token: &str) -> Result<String, Refused> {
-    let header = jsonwebtoken::decode_header(token).map_err(|_| Refused::Form)?;
-    ensure(header.alg == Algorithm::RS256, Refused::Form)?;
-    header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Refused::Form)
+pub(super) fn key_of(token: &str) -> Result<String, Rejection> {
+    let header = jsonwebtoken::decode_header(token).map_err(|_| Rejection::Form)?;
+    ensure(header.alg == Algorithm::RS256, Rejection::Form)?;
+    header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Rejection::Form)
 }
 
 /// Reads the content of a message that this key signed; `nonce` is the digest of the one that was sent.
-pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Refused> {
+pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Rejection> {
     let settings = &platform.settings;
     let claims: Claims =
         crypto::verify(token, key, &settings.issuer, &settings.client_id).map_err(|error| match error.kind() {
-            ErrorKind::InvalidSignature => Refused::Signature,
-            ErrorKind::ExpiredSignature | ErrorKind::ImmatureSignature => Refused::Time,
-            ErrorKind::InvalidIssuer => Refused::Foreign("the issuer"),
-            ErrorKind::InvalidAudience => Refused::Foreign("the audience"),
-            ErrorKind::InvalidAlgorithm | ErrorKind::InvalidToken | ErrorKind::InvalidAlgorithmName => Refused::Form,
-            ErrorKind::MissingRequiredClaim(name) => Refused::Content(format!("{name} is missing")),
-            _ => Refused::Content(error.to_string()),
+            ErrorKind::InvalidSignature => Rejection::Signature,
+            ErrorKind::ExpiredSignature | ErrorKind::ImmatureSignature => Rejection::Time,
+            ErrorKind::InvalidIssuer => Rejection::Foreign("the issuer"),
+            ErrorKind::InvalidAudience => Rejection::Foreign("the audience"),
+            ErrorKind::InvalidAlgorithm | ErrorKind::InvalidToken | ErrorKind::InvalidAlgorithmName => Rejection::Form,
+            ErrorKind::MissingRequiredClaim(name) => Rejection::Content(format!("{name} is missing")),
+            _ => Rejection::Content(error.to_string()),
         })?;
     // SEC 5.1.3, 3 to 5: of several audiences, and where it is said at all, the authorized party is this service.
     let several = matches!(&claims.aud, TokenAudience::Many(all) if all.len() > 1);
     if matches!(&claims.aud, TokenAudience::One(audience) if *audience != settings.client_id) {
-        return Err(Refused::Foreign("the audience"));
+        return Err(Rejection::Foreign("the audience"));
     }
     if (several && claims.azp.is_none()) || claims.azp.as_ref().is_some_and(|azp| *azp != settings.client_id) {
-        return Err(Refused::Foreign("the authorized party"));
+        return Err(Rejection::Foreign("the authorized party"));
     }
     let now = now();
-    ensure(claims.iat <= now + LEEWAY && now <= claims.iat + OLDEST + LEEWAY, Refused::Time)?;
-    ensure(crate::store::Digest::of(claims.nonce.as_bytes()).as_str() == nonce, Refused::Foreign("the nonce"))?;
-    ensure(claims.version == "1.3.0", Refused::Content("it is of another version of LTI than 1.3.0".to_owned()))?;
+    ensure(claims.iat <= now + LEEWAY && now <= claims.iat + OLDEST + LEEWAY, Rejection::Time)?;
+    ensure(
+        crate::store::Digest::from_bytes(claims.nonce.as_bytes()).as_str() == nonce,
+        Rejection::Foreign("the nonce"),
+    )?;
+    ensure(claims.version == "1.3.0", Rejection::Content("it is of another version of LTI than 1.3.0".to_owned()))?;
     if !settings.deployments.contains(&claims.deployment) {
-        return Err(Refused::Deployment(claims.deployment.chars().take(255).collect()));
+        return Err(Rejection::Deployment(claims.deployment.chars().take(255).collect()));
     }
-    ensure((1..=255).contains(&claims.sub.len()), Refused::Content("sub is 1 to 255 characters long".to_owned()))?;
-    let missing = |what: &str| Refused::Content(format!("{what} is missing"));
+    ensure((1..=255).contains(&claims.sub.len()), Rejection::Content("sub is 1 to 255 characters long".to_owned()))?;
+    let missing = |what: &str| Rejection::Content(format!("{what} is missing"));
     let (resource, deep_linking) = match claims.message_type.as_str() {
         "LtiResourceLinkRequest" => (Some(claims.resource.ok_or_else(|| missing("resource_link"))?), None),
         "LtiDeepLinkingRequest" => {
             let wanted = claims.deep_linking.ok_or_else(|| missing("deep_linking_settings"))?;
             if !wanted.accept_types.iter().any(|kind| kind == "ltiResourceLink") {
-                return Err(Refused::Content("no link to a resource may be chosen".to_owned()));
+                return Err(Rejection::Content("no link to a resource may be chosen".to_owned()));
             }
             (None, Some(wanted))
         }
-        _ => return Err(Refused::Content("it is of another type than this service knows".to_owned())),
+        _ => return Err(Rejection::Content("it is of another type than this service knows".to_owned())),
     };
     let context = claims.context.ok_or_else(|| missing("context"))?;
     let is_name = |text: &str| (1..=255).contains(&text.len());
     if !is_name(&context.id) || resource.as_ref().is_some_and(|resource| !is_name(&resource.id)) {
-        return Err(Refused::Content("the names of courses and links are 1 to 255 characters long".to_owned()));
+        return Err(Rejection::Content("the names of courses and links are 1 to 255 characters long".to_owned()));
     }
     let endpoint = claims.endpoint.unwrap_or_default();
     let may = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);

@@ -18,7 +18,7 @@ mod trust;
 pub use client::{Client, ServiceFault};
 pub use keys::{new_key, published};
 pub use message::{
-    Arrival, Context, DeepLinking, LtiPerson, LtiRole, Message, Refused, Resource, deep_linking_response,
+    Arrival, Context, DeepLinking, LtiPerson, LtiRole, Message, Rejection, Resource, deep_linking_response,
 };
 pub use platform::{Platform, PlatformWish};
 pub use roster::fetch as fetch_roster;
@@ -57,7 +57,7 @@ impl Lti {
     ///
     /// # Errors
     /// Its fault.
-    pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Refused> {
+    pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
         let kid = message::key_of(token)?;
         let key = self.trust.key(&self.client, platform, &kid).await?;
         message::read(platform, token, &key, nonce)

@@ -7,9 +7,9 @@
 use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
-    late::Late,
+    late::Lateness,
     queue::{self, Lane, NewJob, Turn},
-    shown::Shown,
+    shown::ShownGrade,
     task::rounded,
     values,
 };
@@ -170,11 +170,11 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
         let state = row.maybe_text("state")?.unwrap_or_default();
         waits |= matches!(state.as_str(), "waiting" | "running");
         let withheld = row.maybe_text("shown")?.filter(|_| row.maybe_int("published_at").is_ok_and(|at| at.is_none()));
-        let (points, most) = match withheld.as_deref().and_then(Shown::read) {
+        let (points, most) = match withheld.as_deref().and_then(ShownGrade::read) {
             Some(shown) => shown.points(),
             None => (row.maybe_text("points")?, row.maybe_text("max_points")?),
         };
-        let late = Late::of(row)?;
+        let late = Lateness::from_row(row)?;
         let points = row
             .maybe_text("mark")?
             .or_else(|| points.map(|points| late.map_or(points.clone(), |late| late.left_of(&points))));

@@ -1,6 +1,6 @@
 //! The keys of platforms, as they publish them: kept for an hour, looked for again when one is not known, since
 //! platforms change their keys.
-use super::{Client, Platform, Refused, crypto::PublicKey};
+use super::{Client, Platform, Rejection, crypto::PublicKey};
 use serde::Deserialize;
 use std::{
     collections::HashMap,
@@ -19,10 +19,10 @@ const PAUSE: Duration = Duration::from_secs(5);
 
 /// The keys of platforms, by number.
 #[derive(Debug, Default)]
-pub(super) struct Trust(Mutex<HashMap<i64, Known>>);
+pub(super) struct Trust(Mutex<HashMap<i64, KnownKeys>>);
 
 #[derive(Debug, Clone)]
-struct Known {
+struct KnownKeys {
     address: String,
     keys: Vec<PublicKey>,
     read_at: Option<Instant>,
@@ -56,14 +56,14 @@ fn usable(set: KeySet) -> Vec<PublicKey> {
 }
 
 impl Trust {
-    fn known(&self, platform: &Platform) -> Option<Known> {
+    fn known(&self, platform: &Platform) -> Option<KnownKeys> {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
 
     /// Returns a platform's key of this name.
-    pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Refused> {
-        let named = |known: &Known| known.keys.iter().find(|key| key.kid == kid).cloned();
+    pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
+        let named = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.known(platform);
         if let Some(known) = &known {
             if known.read_at.is_some_and(|at| at.elapsed() < FRESH)
@@ -72,25 +72,25 @@ impl Trust {
                 return Ok(key);
             }
             if known.asked_at.elapsed() < PAUSE {
-                return named(known).ok_or(Refused::UnknownKey);
+                return named(known).ok_or(Rejection::UnknownKey);
             }
         }
         let asked = client.get(platform, &platform.settings.keys_url).await;
         let keys = asked.and_then(|answer| answer.read("its keys").map(usable));
         let (now, address) = (Instant::now(), platform.settings.keys_url.clone());
         let newly = match keys {
-            Ok(keys) => Known { address, keys, read_at: Some(now), asked_at: now },
+            Ok(keys) => KnownKeys { address, keys, read_at: Some(now), asked_at: now },
             Err(error) => {
                 tracing::warn!(platform = platform.name, %error, "a platform's keys can't be had");
                 let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE));
-                let none = || Known { address, keys: Vec::new(), read_at: None, asked_at: now };
-                Known { asked_at: now, ..before.unwrap_or_else(none) }
+                let none = || KnownKeys { address, keys: Vec::new(), read_at: None, asked_at: now };
+                KnownKeys { asked_at: now, ..before.unwrap_or_else(none) }
             }
         };
         let found = named(&newly);
         let away = newly.read_at.is_none();
         self.0.lock().unwrap_or_else(PoisonError::into_inner).insert(platform.id, newly);
-        found.ok_or(if away { Refused::NoKeys } else { Refused::UnknownKey })
+        found.ok_or(if away { Rejection::NoKeys } else { Rejection::UnknownKey })
     }
 }
 

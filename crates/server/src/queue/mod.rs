@@ -21,7 +21,7 @@ pub use enqueue::{NewJob, Turn, enqueue, waits};
 pub use hold::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
 pub use place::{Place, place};
-pub use tick::{Buried, Tick, tick};
+pub use tick::{BuriedJob, Tick, tick};
 
 use crate::secret;
 use serde::{Deserialize, Serialize};

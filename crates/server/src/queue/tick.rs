@@ -17,14 +17,14 @@ pub struct Tick {
     /// How many jobs wait again.
     pub retried: usize,
     /// Jobs that took their worker down too often; the caller writes what follows in the same transaction.
-    pub buried: Vec<Buried>,
+    pub buried: Vec<BuriedJob>,
     /// Whether leases began anew because nobody had ticked.
     pub outage: bool,
 }
 
 /// A job that took its worker down too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Buried {
+pub struct BuriedJob {
     /// The job's number.
     pub job: i64,
     /// The number of its last claim.
@@ -69,7 +69,7 @@ async fn give_up(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
         match die(transaction, policy, &row, SILENT).await? {
-            Failure::Buried => tick.buried.push(Buried { job, attempt, worker, fault: SILENT.to_owned() }),
+            Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }
     }

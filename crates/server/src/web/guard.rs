@@ -1,5 +1,5 @@
 //! The rules for every request: where it may come from, what answers say to browsers, and what is logged.
-use super::{input::Arrived, who};
+use super::{input::ArrivalTime, who};
 use crate::{access::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
@@ -37,7 +37,7 @@ pub(super) async fn same_site(State(app): State<App>, request: Request, next: Ne
 
 /// Sends a session's cookie again when it lasts longer from now on.
 pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Next) -> Response {
-    let renewed = who::Renewed::default();
+    let renewed = who::RenewedSession::default();
     request.extensions_mut().insert(renewed.clone());
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
@@ -94,7 +94,7 @@ pub(super) async fn headers(State(app): State<App>, request: Request, next: Next
 /// Notes and counts what was asked by the route, never by the address: addresses may hold secrets.
 pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
-    request.extensions_mut().insert(Arrived(start));
+    request.extensions_mut().insert(ArrivalTime(start));
     let in_flight = app.instruments().begin();
     let method = request.method().clone();
     let route = request.extensions().get::<MatchedPath>().map_or("none", MatchedPath::as_str).to_owned();

@@ -22,7 +22,7 @@ pub(super) struct Fields<T>(pub(super) T);
 /// The names in an address; a part that it does not have is empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
-pub(super) struct At {
+pub(super) struct AddressParts {
     pub(super) course: String,
     pub(super) assignment: String,
     pub(super) login: String,
@@ -33,15 +33,15 @@ pub(super) struct At {
 }
 
 /// The query of the address.
-pub(super) struct Asked<T>(pub(super) T);
+pub(super) struct QueryInput<T>(pub(super) T);
 
 /// Where a list is to end, as a query.
 #[derive(Deserialize)]
-pub(super) struct Before {
+pub(super) struct ListEnd {
     before: Option<u64>,
 }
 
-impl Before {
+impl ListEnd {
     /// Returns the number before which it ends.
     pub(super) fn number(&self) -> Option<i64> {
         self.before.map(|before| i64::try_from(before).unwrap_or(i64::MAX))
@@ -67,7 +67,7 @@ impl SeenEvent {
 
 /// Where a list is to begin, as a query.
 #[derive(Deserialize)]
-pub(super) struct After {
+pub(super) struct ListStart {
     pub(super) after: Option<i64>,
 }
 
@@ -78,7 +78,7 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
 
 /// When a request's head came.
 #[derive(Clone, Copy)]
-pub(super) struct Arrived(pub(super) Instant);
+pub(super) struct ArrivalTime(pub(super) Instant);
 
 /// Stands in a request once it is known who asks: more of its body may be read then.
 #[derive(Clone, Copy)]
@@ -163,7 +163,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
         if matches!(*request.method(), Method::GET | Method::HEAD) {
-            let Asked(form) = Asked::from_request_parts(&mut request.into_parts().0, state).await?;
+            let QueryInput(form) = QueryInput::from_request_parts(&mut request.into_parts().0, state).await?;
             return Ok(Self(form));
         }
         if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
@@ -180,7 +180,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
     }
 }
 
-impl<S: Send + Sync> FromRequestParts<S> for At {
+impl<S: Send + Sync> FromRequestParts<S> for AddressParts {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
@@ -193,7 +193,7 @@ impl<S: Send + Sync> FromRequestParts<S> for At {
     }
 }
 
-impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Asked<T> {
+impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for QueryInput<T> {
     type Rejection = Problem;
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {

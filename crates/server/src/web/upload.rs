@@ -38,9 +38,9 @@ const BESIDE: u64 = 1024 * 1024;
 
 /// Counts what came of a form and was not taken by anybody: that lies in memory, and a form may be nothing else.
 #[derive(Clone, Default)]
-struct Untaken(Arc<AtomicU64>);
+struct UntakenBytes(Arc<AtomicU64>);
 
-impl Untaken {
+impl UntakenBytes {
     fn come(&self, bytes: usize) -> Result<(), &'static str> {
         let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
         if untaken > BESIDE { Err("the form has too much beside its file") } else { Ok(()) }
@@ -52,7 +52,7 @@ impl Untaken {
 }
 
 /// A file that came.
-pub(super) struct Received {
+pub(super) struct ReceivedFile {
     /// Where it lies until it is stored.
     pub(super) file: TempPath,
     /// The sender's name for it.
@@ -70,7 +70,7 @@ struct Place<'a> {
 }
 
 /// Receives the body of a request: the file itself, or a form with a field `file`.
-pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Received, Problem> {
+pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     if let Err(problem) = app.ensure_room() {
         return Err(refuse(app, request, most, problem).await);
     }
@@ -130,7 +130,7 @@ pub(super) fn announced(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
 
-async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Received, Problem> {
+async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     let deadline = Instant::now() + place.patience * PAUSES + fair_time(most);
     if !is_form(&request) {
         if announced(&request).is_some_and(|announced| announced > most) {
@@ -138,9 +138,9 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         }
         let body: Body = request.into_body();
         let file = to_file(place, body.into_data_stream(), most, deadline, None).await?;
-        return Ok(Received { file, name: None, form: None, key: None });
+        return Ok(ReceivedFile { file, name: None, form: None, key: None });
     }
-    let untaken = Untaken::default();
+    let untaken = UntakenBytes::default();
     let (parts, body) = request.into_parts();
     let counting = untaken.clone();
     let counted = body.into_data_stream().map(move |chunk| {
@@ -170,7 +170,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
     if name.as_deref() == Some("") && std::fs::metadata(&file)?.len() == 0 {
         return Err(Problem::invalid("no file was chosen"));
     }
-    Ok(Received { file, name, form: form.filter(|form| !form.is_empty()), key: key.filter(|key| !key.is_empty()) })
+    Ok(ReceivedFile { file, name, form: form.filter(|form| !form.is_empty()), key: key.filter(|key| !key.is_empty()) })
 }
 
 /// Returns a short field of a form.
@@ -192,7 +192,7 @@ async fn to_file<E: Display>(
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
     deadline: Instant,
-    untaken: Option<&Untaken>,
+    untaken: Option<&UntakenBytes>,
 ) -> Result<TempPath, Problem> {
     let (file, path) = tempfile::NamedTempFile::new_in(place.incoming)?.into_parts();
     let mut file = tokio::fs::File::from_std(file);

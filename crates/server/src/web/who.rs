@@ -17,9 +17,9 @@ use std::{
 
 /// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Renewed(Arc<OnceLock<String>>);
+pub(super) struct RenewedSession(Arc<OnceLock<String>>);
 
-impl Renewed {
+impl RenewedSession {
     /// Returns the cookie's content, if it is to be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
@@ -52,7 +52,7 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
     Secrets { bearer, session, browser, address: None }
 }
 
-async fn of_parts(parts: &mut Parts, app: &App) -> Secrets {
+async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
     let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
     // A request that came past the proxy.
     let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
@@ -80,13 +80,13 @@ macro_rules! roles {
 }
 
 roles! {
-    Visitor: |parts, app| Ok(app.visitor(of_parts(parts, app).await));
+    Visitor: |parts, app| Ok(app.visitor(read_secrets(parts, app).await));
     Person: |parts, app| {
-        let secrets = of_parts(parts, app).await;
+        let secrets = read_secrets(parts, app).await;
         let person = app.person(&secrets).await?;
         parts.extensions.insert(SignedIn);
         if let (true, Some(secret), Some(renewed)) =
-            (person.is_renewed(), secrets.session, parts.extensions.get::<Renewed>())
+            (person.is_renewed(), secrets.session, parts.extensions.get::<RenewedSession>())
         {
             // Another part of the same request may have noted it.
             drop(renewed.0.set(secret));
@@ -101,7 +101,7 @@ roles! {
     Staff: |parts, app| Member::from_request_parts(parts, app).await?.staff();
     Admin: |parts, app| Person::from_request_parts(parts, app).await?.admin();
     Remote: |parts, app| {
-        let token = of_parts(parts, app).await.bearer.ok_or_else(Problem::not_signed_in)?;
+        let token = read_secrets(parts, app).await.bearer.ok_or_else(Problem::not_signed_in)?;
         let name = parts.headers.get("fosssim-worker").and_then(|name| name.to_str().ok()).unwrap_or("worker");
         let remote = app.remote(&token, name).await?;
         parts.extensions.insert(SignedIn);

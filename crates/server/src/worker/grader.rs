@@ -9,7 +9,7 @@ use tokio_util::sync::CancellationToken;
 
 /// The result of a grading, with its files still in the working folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct Graded {
+pub struct GradingOutput {
     /// The result, without files.
     pub outcome: Outcome,
     /// The result's files.
@@ -58,5 +58,5 @@ pub trait Grader: Clone + Send + Sync + 'static {
         suite: Option<&Path>,
         folder: &Path,
         stop: CancellationToken,
-    ) -> impl Future<Output = Result<Graded, GraderFault>> + Send;
+    ) -> impl Future<Output = Result<GradingOutput, GraderFault>> + Send;
 }

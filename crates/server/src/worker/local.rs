@@ -7,7 +7,7 @@ use crate::{
     shown::{self, KeptTexts},
     store::{Artifact, Digest, Store, StoreError},
     task::{Outcome, Task},
-    wire::{Claimed, LeaseAnswer},
+    wire::{ClaimedJob, LeaseAnswer},
 };
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
@@ -90,7 +90,7 @@ fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
 }
 
 impl JobSource for LocalSource {
-    async fn claim(&self) -> Result<Option<Claimed>, SourceError> {
+    async fn claim(&self) -> Result<Option<ClaimedJob>, SourceError> {
         let claimant = Claimant { worker: &self.worker, token: self.token };
         ledger::tick(&self.database, &self.policy).await?;
         loop {
@@ -106,7 +106,7 @@ impl JobSource for LocalSource {
                 Ok(task) => {
                     let renew_every = self.policy.renew_every();
                     let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
-                    return Ok(Some(Claimed { lease: claim.lease, renew_every, task }));
+                    return Ok(Some(ClaimedJob { lease: claim.lease, renew_every, task }));
                 }
                 // Written by another version of the program: not this worker's to do.
                 Err(error) => {
@@ -142,7 +142,7 @@ impl JobSource for LocalSource {
                 return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
             }
         }
-        let KeptTexts { shown, failed } = shown::of_outcome(&self.store, &outcome.files).await?;
+        let KeptTexts { shown, failed } = shown::read_texts(&self.store, &outcome.files).await?;
         let outcome = Outcome { shown: Some(shown), failed, ..outcome.clone() };
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;

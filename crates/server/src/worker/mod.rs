@@ -14,7 +14,7 @@ mod source;
 mod suite_check;
 
 pub(crate) use child::limit;
-pub use grader::{Graded, Grader, GraderFault, NewFile, PROGRESS};
+pub use grader::{Grader, GraderFault, GradingOutput, NewFile, PROGRESS};
 pub use local::LocalSource;
 use program::GRACE;
 pub use program::{PUBLISHED_PAGE, Program, REPORTS, STAFF_PAGE};

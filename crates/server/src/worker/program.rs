@@ -1,7 +1,7 @@
 //! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
 //! takes the worker down, and whatever the child leaves behind dies with the job.
 use super::{
-    Graded, Grader, GraderFault, NewFile, PROGRESS,
+    Grader, GraderFault, GradingOutput, NewFile, PROGRESS,
     child::{Child, End},
     reading,
 };
@@ -194,7 +194,7 @@ impl Grader for Program {
         suite: Option<&Path>,
         folder: &Path,
         stop: CancellationToken,
-    ) -> Result<Graded, GraderFault> {
+    ) -> Result<GradingOutput, GraderFault> {
         let program = match task.submission.form {
             Form::Program => {
                 place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
@@ -236,7 +236,7 @@ impl Grader for Program {
             path: folder.join(name),
         };
         let files = REPORTS.iter().map(new).filter(|file| file.path.exists()).collect();
-        Ok(Graded { outcome, files })
+        Ok(GradingOutput { outcome, files })
     }
 }
 

@@ -4,7 +4,7 @@ use crate::{
     queue::{Lease, Progress},
     store::{Artifact, Digest, digest_of_file},
     task::Outcome,
-    wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
+    wire::{ClaimedJob, FinishedJob, JobFault, LeaseAnswer, Manners, Renewal, SignOfLife},
 };
 use serde::{Serialize, de::DeserializeOwned};
 use std::{
@@ -145,7 +145,7 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
 }
 
 impl JobSource for RemoteSource {
-    async fn claim(&self) -> Result<Option<Claimed>, SourceError> {
+    async fn claim(&self) -> Result<Option<ClaimedJob>, SourceError> {
         self.call(move |parts| {
             let mut answer = checked(parts.post("claim", &serde_json::json!({}))?)?;
             if answer.status() == 204 {
@@ -168,7 +168,7 @@ impl JobSource for RemoteSource {
     }
 
     async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<LeaseAnswer, SourceError> {
-        self.held("finish", Finished { lease: lease.clone(), outcome: outcome.clone() }).await
+        self.held("finish", FinishedJob { lease: lease.clone(), outcome: outcome.clone() }).await
     }
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer, SourceError> {
@@ -218,7 +218,8 @@ impl JobSource for RemoteSource {
     }
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
-        let alive = Alive { slots, fault: fault.map(str::to_owned), version: env!("CARGO_PKG_VERSION").to_owned() };
+        let alive =
+            SignOfLife { slots, fault: fault.map(str::to_owned), version: env!("CARGO_PKG_VERSION").to_owned() };
         let manners: Manners = self.call(move |parts| parts.json("tick", &alive)).await?;
         if manners.version != env!("CARGO_PKG_VERSION") {
             tracing::debug!(server = manners.version, "the server is of another version");

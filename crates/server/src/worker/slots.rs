@@ -6,7 +6,7 @@ use super::{
 use crate::{
     queue::{Lease, Progress},
     task::{Outcome, OutputFile, Suite},
-    wire::Claimed,
+    wire::ClaimedJob,
 };
 use std::{
     fs::File,
@@ -115,7 +115,7 @@ enum JobEnding {
     Lost,
 }
 
-async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed, stop: CancellationToken) {
+async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: ClaimedJob, stop: CancellationToken) {
     let lost = CancellationToken::new();
     let folder = job_folder(&health.folder);
     let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));
@@ -208,7 +208,7 @@ impl From<SourceError> for GraderFault {
 async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
-    job: &Claimed,
+    job: &ClaimedJob,
     folder: &Path,
     halt: CancellationToken,
 ) -> Result<Outcome, GraderFault> {

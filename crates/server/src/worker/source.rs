@@ -3,7 +3,7 @@ use crate::{
     queue::{Lease, Progress},
     store::{Artifact, Digest},
     task::Outcome,
-    wire::{Claimed, LeaseAnswer},
+    wire::{ClaimedJob, LeaseAnswer},
 };
 use std::{future::Future, path::Path, time::Duration};
 use thiserror::Error;
@@ -26,7 +26,7 @@ pub enum SourceError {
 pub trait JobSource: Clone + Send + Sync + 'static {
     /// Returns the next job, if there is one. Not to be interrupted: the source might have given away a job that nobody
     /// gets.
-    fn claim(&self) -> impl Future<Output = Result<Option<Claimed>, SourceError>> + Send;
+    fn claim(&self) -> impl Future<Output = Result<Option<ClaimedJob>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;

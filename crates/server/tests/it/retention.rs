@@ -61,7 +61,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     assert_eq!(ada.get(&path(new, "/upload")).expect(200).body, program("AC", 100));
     ada.get(&path(new, "/files/report.txt")).expect(200);
     ada.get(&path(waiting, "/upload")).expect(200);
-    assert!(!store.has(&Digest::of(&program("WA", 40))).await.expect("the store"));
+    assert!(!store.has(&Digest::from_bytes(&program("WA", 40))).await.expect("the store"));
     // The same bytes handed in again are a submission like any other.
     let again = ada.submit("physics", &program("WA", 40));
     assert_eq!(ada.get(&path(again, "/upload")).expect(200).body, program("WA", 40));
@@ -179,7 +179,7 @@ mod bucket {
             let large_one = store.put_file(&file).await.expect("stored in parts").digest;
             let small = crate::support::put(&store, b"small").await.digest;
             assert!(crate::support::bytes(&store, &large_one).await == large);
-            assert!(!store.has(&Digest::of(b"none")).await.expect("an answer"));
+            assert!(!store.has(&Digest::from_bytes(b"none")).await.expect("an answer"));
             let long = Duration::from_secs(3600);
             assert_eq!(store.give_up(long, |digests| named(digests, |_| false)).await.expect("done"), 0, "too young");
             // Nothing names either of them for a moment: put aside, and read all the same.

@@ -5,7 +5,7 @@ use fosssim_server::{
     store::{Artifact, Store},
     task::{Form, Input, Outcome, Suite, Task},
     values,
-    worker::{self, Graded, Grader, GraderFault, LocalSource},
+    worker::{self, Grader, GraderFault, GradingOutput, LocalSource},
 };
 use std::{
     path::Path,
@@ -33,7 +33,7 @@ impl Grader for Willing {
         _: Option<&Path>,
         _: &Path,
         _: CancellationToken,
-    ) -> Result<Graded, GraderFault> {
+    ) -> Result<GradingOutput, GraderFault> {
         tokio::time::sleep(Duration::from_millis(2)).await;
         let outcome = Outcome {
             verdict: "accepted".to_owned(),
@@ -42,7 +42,7 @@ impl Grader for Willing {
             seconds: "0".to_owned(),
             ..Outcome::default()
         };
-        Ok(Graded { outcome, files: Vec::new() })
+        Ok(GradingOutput { outcome, files: Vec::new() })
     }
 }
 
@@ -97,7 +97,7 @@ impl Grader for Broken {
         _: Option<&Path>,
         _: &Path,
         _: CancellationToken,
-    ) -> Result<Graded, GraderFault> {
+    ) -> Result<GradingOutput, GraderFault> {
         self.tried.fetch_add(1, Ordering::SeqCst);
         Err(GraderFault::Failed("it is broken".to_owned()))
     }

@@ -7,7 +7,7 @@ use crate::{
     cli::{
         console, exit, input,
         output::{Folder, Output, has_extension},
-        pictures::{Render, RenderFormat},
+        pictures::{RenderArguments, RenderFormat},
     },
     render::{
         Extent, Painter, PictureOptions, Raster, Size,
@@ -33,7 +33,7 @@ const LONG_FILM: u32 = 1500;
 /// No more pictures than this are drawn at a time.
 const MOST_PICTURES: u32 = 100_000;
 
-pub(super) fn run(arguments: &Render) -> Result<u8> {
+pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let form = form(arguments)?;
     let scene = input::scene(&arguments.scene)?;
     let picks = picks(arguments, form, &scene.scene)?;
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &Render) -> Result<u8> {
 
 /// Returns the form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a
 /// folder with a picture per step.
-fn form(arguments: &Render) -> Result<RenderFormat> {
+fn form(arguments: &RenderArguments) -> Result<RenderFormat> {
     let (output, is_single) = (&arguments.output, arguments.step.is_some());
     let by_name = |extension: &str| has_extension(output, extension);
     let format = match arguments.format {
@@ -111,7 +111,7 @@ const fn is_film(form: RenderFormat) -> bool {
 }
 
 /// Returns which steps are drawn.
-fn picks(arguments: &Render, form: RenderFormat, scene: &Scene) -> Result<Picks> {
+fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<Picks> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
@@ -207,7 +207,7 @@ enum RenderTarget {
 }
 
 impl RenderTarget {
-    fn open(form: RenderFormat, arguments: &Render) -> Result<Self> {
+    fn open(form: RenderFormat, arguments: &RenderArguments) -> Result<Self> {
         let inputs: Vec<Identity> = [Some(&arguments.scene), arguments.trace.as_ref(), arguments.overlay.as_ref()]
             .into_iter()
             .flatten()

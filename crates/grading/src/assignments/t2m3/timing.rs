@@ -24,9 +24,9 @@ impl MadeScene {
 }
 
 /// Whole numbers below 1000 that look drawn (a linear congruential generator).
-struct Drawn(u32);
+struct DrawnNumbers(u32);
 
-impl Drawn {
+impl DrawnNumbers {
     fn next(&mut self) -> i32 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (self.0 >> 8).cast_signed() % 1000
@@ -59,7 +59,7 @@ fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32,
 /// Returns 15,000 balls in a box of four edges, each near its neighbors; a few of them go fast.
 fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
-    let mut drawn = Drawn(1);
+    let mut drawn = DrawnNumbers(1);
     for corner in [[-400, -400], [30_400, -400], [30_400, 20_400], [-400, 20_400]] {
         particle(&mut text, corner, [0; 2], 400, true);
     }
@@ -80,7 +80,7 @@ fn box_of_balls() -> String {
 fn pile_of_ribbons() -> String {
     let (ribbons, length) = (120, 40);
     let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);
-    let mut drawn = Drawn(2);
+    let mut drawn = DrawnNumbers(2);
     let mut edges = String::new();
     for ribbon in 0..ribbons {
         let left = 2 * drawn.next();

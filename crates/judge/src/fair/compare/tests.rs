@@ -16,10 +16,10 @@ fn what_fits_at_once_is_what_a_close_look_says() {
     let mut answered = 0;
     for round in 0..20_000 {
         let length = 2 + round % 5;
-        let expected: Vec<Bounded> = (0..length)
+        let expected: Vec<BoundedValue> = (0..length)
             .map(|_| {
                 let value = (next() - 0.5) * [1.0, 1e-9, 1e3][(next() * 3.0) as usize];
-                Bounded { value, bound: value.abs() * 40.0 * next() }
+                BoundedValue { value, bound: value.abs() * 40.0 * next() }
             })
             .collect();
         let (factor, noise) = (4.0 * next(), [0.0, 1e-15, 1e-13][round % 3]);
@@ -41,10 +41,10 @@ fn what_is_right_at_once_is_right() {
     let mut answered = 0;
     for round in 0..40_000 {
         let length = 2 + round % 5;
-        let expected: Vec<Bounded> = (0..length)
+        let expected: Vec<BoundedValue> = (0..length)
             .map(|_| {
                 let value = (next() - 0.5) * [1.0, 1e-9, 1e3, 1e-13][(next() * 4.0) as usize];
-                Bounded { value, bound: value.abs() * (1.0 + 40.0 * next()) }
+                BoundedValue { value, bound: value.abs() * (1.0 + 40.0 * next()) }
             })
             .collect();
         let factor = [1.0, 0.25, 1.0 / 3.0, 3.0, 1e7][round / 5 % 5];
@@ -66,8 +66,8 @@ fn what_is_right_at_once_is_right() {
     assert_eq!(is_clear(&parabola(), &parabola().map(|c| -c.value)), None);
 }
 
-fn parabola() -> [Bounded; 3] {
-    [-0.37, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() })
+fn parabola() -> [BoundedValue; 3] {
+    [-0.37, 2.2, -0.71].map(|value: f64| BoundedValue { value, bound: 8.0 * value.abs() })
 }
 
 #[test]
@@ -103,10 +103,10 @@ fn what_fits_with_no_factor_is_wrong() {
     let (mut wrong, mut certain) = (0, 0);
     for round in 0..40_000 {
         let length = 2 + round % 5;
-        let mut expected: Vec<Bounded> = (0..length)
+        let mut expected: Vec<BoundedValue> = (0..length)
             .map(|_| {
                 let value = (next() - 0.5) * [1.0, 1e-9, 1e3, 0.0][(next() * 4.0) as usize];
-                Bounded { value, bound: value.abs() * 40.0 * next() + [0.0, 1.0][round / 5 % 2] }
+                BoundedValue { value, bound: value.abs() * 40.0 * next() + [0.0, 1.0][round / 5 % 2] }
             })
             .collect();
         let factor = [1.0, 0.25, 1.0 / 3.0, 1e-7, -1.0][round / 10 % 5];
@@ -143,7 +143,7 @@ fn one_part_in_a_billion_is_wrong_and_a_few_roundings_are_not() {
 /// Small leading coefficients are dropped after scaling; others can't be missing.
 #[test]
 fn only_small_leading_coefficients_may_be_missing() {
-    let right = [1e-7, 2.2, -0.71].map(|value: f64| Bounded { value, bound: 8.0 * value.abs() });
+    let right = [1e-7, 2.2, -0.71].map(|value: f64| BoundedValue { value, bound: 8.0 * value.abs() });
     assert!(compare(&right, &[2.2e-6, -0.71e-6], &[1.0]).is_ok(), "dropped at scale 1e-6: 1e-13");
     assert!(compare(&right, &[2.2, -0.71], &[1.0]).is_err(), "not small at scale 1");
 }
@@ -151,7 +151,7 @@ fn only_small_leading_coefficients_may_be_missing() {
 /// A program that divides polynomials by their size makes ordinary numbers of round-off.
 #[test]
 fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
-    let right = [1e-16, 0.0].map(|value: f64| Bounded { value, bound: 1.0 });
+    let right = [1e-16, 0.0].map(|value: f64| BoundedValue { value, bound: 1.0 });
     for logged in [&[] as &[f64], &[1e-11], &[-1.0, 0.3], &[1e100]] {
         assert_eq!(compare(&right, logged, &[1.0]), Ok(Match { scale: None, share: 0.0 }), "{logged:?}");
     }
@@ -162,7 +162,7 @@ fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
 /// Where nothing moves there is no round-off either.
 #[test]
 fn what_is_exactly_zero_is_zero() {
-    let right = [Bounded::exact(0.0); 2];
+    let right = [BoundedValue::exact(0.0); 2];
     assert!(compare(&right, &[], &[1.0]).is_ok() && compare(&right, &[0.0, -0.0], &[1.0]).is_ok());
     assert!(compare(&right, &[1e-11], &[1.0]).is_err());
 }
@@ -170,7 +170,7 @@ fn what_is_exactly_zero_is_zero() {
 /// The trace's own states may have lost all numbers: then its polynomials have none, and that is no second error.
 #[test]
 fn no_number_stands_where_none_is_expected() {
-    let (lost, kept) = (Bounded { value: f64::NAN, bound: f64::NAN }, Bounded::rounded(0.3));
+    let (lost, kept) = (BoundedValue { value: f64::NAN, bound: f64::NAN }, BoundedValue::rounded(0.3));
     assert!(compare(&[lost, kept], &[f64::NAN, 0.3], &[1.0]).is_ok());
     assert!(compare(&[lost, kept], &[f64::INFINITY, 0.3], &[1.0]).is_ok());
     for logged in [&[1.0, 0.3], &[f64::NAN, f64::NAN]] {
@@ -182,7 +182,7 @@ fn no_number_stands_where_none_is_expected() {
 /// up to some hundred times; it cancels within the step.
 #[test]
 fn round_off_that_cancels_within_the_step_is_right() {
-    let right = [1e-3, -2e-3, 0.4, -1.1, 0.7].map(|value: f64| Bounded { value, bound: 4.0 * value.abs() });
+    let right = [1e-3, -2e-3, 0.4, -1.1, 0.7].map(|value: f64| BoundedValue { value, bound: 4.0 * value.abs() });
     // A hundred roundings of the quartic that is small on the whole step: t (t - 1/4) (t - 3/4) (t - 1).
     let small = [1.0, -2.0, 1.1875, -0.1875, 0.0];
     let turned = |size: f64| -> Vec<f64> {

@@ -12,7 +12,7 @@ use fosssim_model::{
     },
 };
 use fosssim_num::{
-    bounded::{Bounded, Magnitude, UNIT_ROUNDOFF},
+    bounded::{BoundedValue, Magnitude, UNIT_ROUNDOFF},
     lanes::Plane,
     polynomial::{MAX_COEFFICIENTS, Polynomial},
     tolerances::FAIR_UNITS,
@@ -84,15 +84,15 @@ fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
     let radius = of_particles + of_particles.max(largest(&mut scene.edges.iter().map(|edge| edge.radius)));
     let normal = largest(&mut scene.half_planes.iter().map(|half_plane| extent(half_plane.normal)));
     let both = |value: f64, bound: f64| {
-        let number = Bounded { value: Magnitude(value), bound: Magnitude(bound) };
+        let number = BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
         Plane { x: number, y: number }
     };
     // Only differences of positions matter, which are not larger than the spread; what is too small of their moduli in
     // the bounds is added.
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
-    let radii = Bounded { value: Magnitude(radius), bound: Magnitude(radius) };
-    let of = |lists: [&[Bounded<Magnitude>]; PairKind::MOST_POLYNOMIALS]| {
+    let radii = BoundedValue { value: Magnitude(radius), bound: Magnitude(radius) };
+    let of = |lists: [&[BoundedValue<Magnitude>]; PairKind::MOST_POLYNOMIALS]| {
         lists.map(|list| {
             let norm: f64 = list.iter().map(|c| c.bound.0).sum();
             let most = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;

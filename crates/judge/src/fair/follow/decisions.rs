@@ -13,7 +13,7 @@ use fosssim_num::vector::Vec2;
 
 /// The result of the reference's own polynomials for a pair whose logged ones are right, but differ from them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Own {
+pub(super) struct OwnImpact {
     /// The objects' time of impact.
     pub time: f64,
     /// Whether the logged ones have lost leading coefficients that these have.
@@ -54,7 +54,7 @@ impl Follower<'_> {
     /// which nothing was lost, say this.
     pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
-        self.call.own = Some(Own { time, lost: false });
+        self.call.own = Some(OwnImpact { time, lost: false });
         if self.searchable(self.place(pair).index, pair.kind.polynomials()).is_none() {
             return by_own;
         }
@@ -65,7 +65,7 @@ impl Follower<'_> {
     /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault. Where a factor
     /// keeps some that the course's library drops of the reference's, nothing is lost: what its root finder makes of
     /// them is not charged.
-    fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: Own) {
+    fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
         if !own.lost {
             return;
         }

@@ -10,7 +10,7 @@ mod polynomials;
 use super::{
     contact::{self, Tolerances},
     context::{Context, FollowedDecision, Records},
-    formulas::{BoundedPairMotion, Expected},
+    formulas::{BoundedPairMotion, ExpectedPolynomials},
     probe::Sensitivity,
     step_judgement::StepJudgement,
     unapplied,
@@ -20,7 +20,7 @@ use crate::{
     finding::{Finding, FindingDetail, Part},
 };
 use at_once::Floors;
-use decisions::Own;
+use decisions::OwnImpact;
 use fosssim_model::{
     scene::Collision,
     sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Steer, Zone},
@@ -77,7 +77,7 @@ pub(super) struct Follower<'a> {
 #[derive(Debug, Default)]
 struct CurrentCall {
     /// The result of the reference's own polynomials, where the logged ones are right, but differ from them.
-    own: Option<Own>,
+    own: Option<OwnImpact>,
     /// Whether the polynomials are right, and lead the root finder to another decision than the reference's.
     is_disputed: bool,
     /// Whether the polynomials are right, nothing was lost, and those that were logged exclude an impact.
@@ -149,7 +149,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns how the call's objects move, and what its polynomials should be.
-    fn expected(&self) -> Option<(BoundedPairMotion, Expected)> {
+    fn expected(&self) -> Option<(BoundedPairMotion, ExpectedPolynomials)> {
         let SeenCall { motion, has_right_approach } = self.call.seen?;
         let polynomials = motion.polynomials();
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))
@@ -271,10 +271,10 @@ impl Steer for Follower<'_> {
                 return;
             }
             let lost = differ && lengths().any(|(own, logged)| logged < own);
-            self.call.own = contact::time_of(polynomials).map(|time| Own { time, lost });
+            self.call.own = contact::time_of(polynomials).map(|time| OwnImpact { time, lost });
         }
         let Some(searched) = self.searchable(index, count) else { return };
-        if let (true, Some(Own { time, lost: false }), Some(SeenCall { motion, .. })) =
+        if let (true, Some(OwnImpact { time, lost: false }), Some(SeenCall { motion, .. })) =
             (is_right, self.call.own, &self.call.seen)
             && let Some(other) = contact::time_of(&searched[..count])
         {

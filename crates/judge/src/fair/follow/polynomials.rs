@@ -3,13 +3,13 @@ use super::{Follower, SeenCall};
 use crate::{
     fair::{
         compare::{Match, Mismatch, compare, shows_factor},
-        formulas::{BoundedPairMotion, Expected},
-        polynomial::{Logged, PolynomialJudgement, compare_first, wrong_polynomial},
+        formulas::{BoundedPairMotion, ExpectedPolynomials},
+        polynomial::{LoggedPolynomial, PolynomialJudgement, compare_first, wrong_polynomial},
     },
     finding::{FindingDetail, PolynomialPlace, Role},
 };
 use fosssim_model::sim::{Pair, PairKind};
-use fosssim_num::bounded::Bounded;
+use fosssim_num::bounded::BoundedValue;
 
 /// How each polynomial of a call compares; of those beyond its number nothing is said.
 type Results = [Result<Match, Mismatch>; PairKind::MOST_POLYNOMIALS];
@@ -40,7 +40,7 @@ impl<'a> Follower<'a> {
         };
         let mut seen = motion(q_end, bounds);
         let mut expected = seen.polynomials();
-        let matches = |expected: &Expected, at_once: &[Option<Match>]| -> Results {
+        let matches = |expected: &ExpectedPolynomials, at_once: &[Option<Match>]| -> Results {
             std::array::from_fn(|number| match at_once.get(number) {
                 None => Ok(Match { scale: None, share: 0.0 }),
                 Some(Some(found)) => Ok(*found),
@@ -90,29 +90,42 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns polynomial `number` of a call whose first one is at `index`.
-    fn logged_polynomial(&self, pair: Pair, index: usize, number: usize) -> Logged<'a> {
+    fn logged_polynomial(&self, pair: Pair, index: usize, number: usize) -> LoggedPolynomial<'a> {
         let (role, index) = (Role::from_number(pair.kind, number), index + number);
         let place = PolynomialPlace { pass: self.pass, pair, role, index };
-        Logged { place, number, list: self.records.end.polynomials.get(index) }
+        LoggedPolynomial { place, number, list: self.records.end.polynomials.get(index) }
     }
 
     /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
     /// is where it should be: overlap and approach tell how far the objects are apart, the other two of a particle and
     /// an edge where along the edge.
-    fn is_proven(&self, expected: &Expected, results: &Results, pair: Pair, index: usize, number: usize) -> bool {
+    fn is_proven(
+        &self,
+        expected: &ExpectedPolynomials,
+        results: &Results,
+        pair: Pair,
+        index: usize,
+        number: usize,
+    ) -> bool {
         let other = match pair.kind {
             PairKind::ParticleEdge => 3 - number,
             PairKind::ParticleParticle | PairKind::ParticleHalfPlane => 1 - number,
         };
         let list = self.logged_polynomial(pair, index, other).list;
-        let proves = |expected: &[Bounded], result: Result<Match, Mismatch>| {
+        let proves = |expected: &[BoundedValue], result: Result<Match, Mismatch>| {
             result.is_ok_and(|found| found.scale.is_some()) && shows_factor(expected, list)
         };
         proves(expected.polynomial(other), results[other])
             || expected.other_form(other).is_some_and(|right| proves(right, compare(right, list, &[1.0])))
     }
 
-    fn charge_polynomial(&mut self, logged: &Logged<'_>, expected: &Expected, mismatch: Mismatch, is_known: bool) {
+    fn charge_polynomial(
+        &mut self,
+        logged: &LoggedPolynomial<'_>,
+        expected: &ExpectedPolynomials,
+        mismatch: Mismatch,
+        is_known: bool,
+    ) {
         let (part, kind, number) = (self.part(), logged.place.pair.kind, logged.number);
         if !is_known {
             if self.tainted[part] {

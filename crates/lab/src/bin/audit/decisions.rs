@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use fosssim_oracle::num::{
-    bounded::Bounded,
+    bounded::BoundedValue,
     decision::{Certainty, Level, decide},
     polynomial::Polynomial,
 };
@@ -30,11 +30,11 @@ impl Decisions {
         &mut self,
         index: u64,
         geometry: &str,
-        lists: &[Vec<Bounded>],
+        lists: &[Vec<BoundedValue>],
         polynomials: &[Polynomial],
         time: Option<f64>,
     ) {
-        let slices: Vec<&[Bounded]> = lists.iter().map(Vec::as_slice).collect();
+        let slices: Vec<&[BoundedValue]> = lists.iter().map(Vec::as_slice).collect();
         let decision = decide(&slices, UNITS);
         self.levels[decision.level as usize] += 1;
         self.certainties[decision.certainty as usize] += 1;
@@ -46,7 +46,7 @@ impl Decisions {
             [first, rest @ ..] => !rest.is_empty() && *first > 0.0 && rest.iter().all(|&value| value == 0.0),
             [] => false,
         };
-        let dropped = |(list, polynomial): (&Vec<Bounded>, &Polynomial)| {
+        let dropped = |(list, polynomial): (&Vec<BoundedValue>, &Polynomial)| {
             let kept = polynomial.coefficients().len();
             list[..list.len() - kept].iter().any(|coefficient| coefficient.value != 0.0)
         };

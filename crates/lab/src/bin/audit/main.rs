@@ -16,7 +16,7 @@
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
     num::{
-        bounded::{Bounded, Bounded2},
+        bounded::{BoundedValue, BoundedVector},
         certificate::{Level, exclusion},
         first_time::first_time,
         polynomial::Polynomial,
@@ -82,7 +82,7 @@ struct AuditTally {
 impl AuditTally {
     fn audit(&mut self, index: u64, random: &mut Random) {
         let (pair, geometry, lists) = draw(random);
-        let values = |list: &Vec<Bounded>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
+        let values = |list: &Vec<BoundedValue>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
         let polynomials: Vec<Polynomial> = lists.iter().map(|list| Polynomial::trimmed(&values(list))).collect();
         let level = exclusion(&polynomials);
         let time = first_time(&polynomials);
@@ -218,7 +218,7 @@ struct RandomMotion {
 type Make = fn(&mut Random) -> RandomMotion;
 
 /// Draws a detection: pair type, name of the distribution, polynomials.
-fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
+fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
     let pair = [0, 1, 1, 2, 3][random.below(5) as usize];
     if pair == 3 {
         return (pair, "zeros on a grid", vec![product(random)]);
@@ -249,7 +249,7 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<Bounded>>) {
 
 /// Returns a polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that
 /// is often negative within the step.
-fn product(random: &mut Random) -> Vec<Bounded> {
+fn product(random: &mut Random) -> Vec<BoundedValue> {
     let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
     let degree = 3 + random.below(3) as usize;
     let noise = if random.chance(2) { 0.0 } else { random.log(-16.0, -3.0) };
@@ -271,7 +271,7 @@ fn product(random: &mut Random) -> Vec<Bounded> {
             }
         }
     }
-    coefficients[..=degree].iter().map(|&coefficient| Bounded::rounded(coefficient)).collect()
+    coefficients[..=degree].iter().map(|&coefficient| BoundedValue::rounded(coefficient)).collect()
 }
 
 /// Makes a motion in which every object has its own scale and speed.
@@ -376,24 +376,24 @@ fn bulk(random: &mut Random) -> RandomMotion {
 }
 
 /// Returns the polynomials of collisions.md 2.
-fn particle_particle(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
-    let [x1, x2, _] = motion.x.map(Bounded2::rounded);
-    let [d1, d2, _] = motion.d.map(Bounded2::rounded);
-    let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, Bounded::rounded(motion.radius));
+fn particle_particle(motion: &RandomMotion) -> Vec<Vec<BoundedValue>> {
+    let [x1, x2, _] = motion.x.map(BoundedVector::rounded);
+    let [d1, d2, _] = motion.d.map(BoundedVector::rounded);
+    let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, BoundedValue::rounded(motion.radius));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
-fn particle_half_plane(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
-    let [x, point, normal] = motion.x.map(Bounded2::rounded);
-    let (d, radius) = (Bounded2::rounded(motion.d[0]), Bounded::rounded(motion.radius));
+fn particle_half_plane(motion: &RandomMotion) -> Vec<Vec<BoundedValue>> {
+    let [x, point, normal] = motion.x.map(BoundedVector::rounded);
+    let (d, radius) = (BoundedVector::rounded(motion.d[0]), BoundedValue::rounded(motion.radius));
     let (overlap, approach) = formulas::particle_half_plane(x, d, radius, point, normal, normal.dot(normal));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
-fn particle_edge(motion: &RandomMotion) -> Vec<Vec<Bounded>> {
-    let [x1, x2, x3] = motion.x.map(Bounded2::rounded);
-    let [d1, d2, d3] = motion.d.map(Bounded2::rounded);
+fn particle_edge(motion: &RandomMotion) -> Vec<Vec<BoundedValue>> {
+    let [x1, x2, x3] = motion.x.map(BoundedVector::rounded);
+    let [d1, d2, d3] = motion.d.map(BoundedVector::rounded);
     let edge = formulas::EdgeMotions::new(x2, d2, x3, d3);
-    let pair = formulas::particle_edge(x1, d1, &edge, Bounded::rounded(motion.radius));
+    let pair = formulas::particle_edge(x1, d1, &edge, BoundedValue::rounded(motion.radius));
     vec![pair.distance.to_vec(), pair.beyond_first.to_vec(), pair.before_second.to_vec(), pair.approach.to_vec()]
 }

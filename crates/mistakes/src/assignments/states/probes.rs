@@ -6,7 +6,7 @@ macro_rules! probes {
 }
 
 /// Returns the names and texts of the probe scenes of a milestone.
-pub(in crate::assignments) const fn of(milestone: Assignment) -> &'static [(&'static str, &'static str)] {
+pub(in crate::assignments) const fn probes_for(milestone: Assignment) -> &'static [(&'static str, &'static str)] {
     match milestone {
         Assignment::T1M1 => probes!["two-fields-and-a-fixed-particle"],
         Assignment::T1M2 => probes!["springs-share-a-particle", "drag-and-pull-of-unequal-masses", "drag-alone"],

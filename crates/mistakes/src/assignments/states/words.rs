@@ -60,13 +60,13 @@ impl Slip {
             Self::SecondOnly if of.area() == Area::Jacobians => "lacks the first particle's block on the diagonal",
             Self::OtherVelocity if of.id.starts_with("explicit") => "has the new velocity instead of the old one",
             Self::NoFactor if of.id.starts_with("penalty") => "ignores the stiffness",
-            other => other.words(),
+            other => other.describe(),
         };
         text.to_owned()
     }
 
     /// Returns the words that fit any quantity.
-    const fn words(self) -> &'static str {
+    const fn describe(self) -> &'static str {
         match self {
             Self::Missing => "is missing",
             Self::Sign => "has the wrong sign",

@@ -1,7 +1,7 @@
 //! Right formulas of wrong inputs: positions at the end of the step, a displacement forgotten, radii squared apart.
 use super::{Inputs, inputs::root};
 use fosssim_model::sim::PairKind;
-use fosssim_num::bounded::{Bounded, Bounded2};
+use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
 /// One thing that stands for another.
 pub struct Exchange {
@@ -29,20 +29,20 @@ impl Exchange {
 const PP: PairKind = PairKind::ParticleParticle;
 const PE: PairKind = PairKind::ParticleEdge;
 const PH: PairKind = PairKind::ParticleHalfPlane;
-const NOTHING: Bounded2 = Bounded2 { x: Bounded::exact(0.0), y: Bounded::exact(0.0) };
+const NOTHING: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
 
 /// Positions at the end of the step.
-fn ends(inputs: &Inputs) -> [Bounded2; 3] {
+fn ends(inputs: &Inputs) -> [BoundedVector; 3] {
     std::array::from_fn(|body| inputs.x[body] + inputs.d[body])
 }
 
-fn square(value: Bounded) -> Bounded {
+fn square(value: BoundedValue) -> BoundedValue {
     value * value
 }
 
 /// Leaves one component of all vectors out.
-fn without(inputs: &mut Inputs, component: fn(&mut Bounded2) -> &mut Bounded) {
-    inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = Bounded::exact(0.0));
+fn without(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
+    inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::exact(0.0));
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
 
@@ -102,7 +102,7 @@ exchanges! {
         => "Each radius is squared for itself" => "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
     "radius-not-squared" [PP, PE, PH] 2.7: |inputs| inputs.square = inputs.radii[0] + inputs.radii[1]
         => "The radius, or the sum of the radii, is not squared" => "R is used instead of R^2";
-    "no-radius" [PP, PE, PH] 2.9: |inputs| inputs.square = Bounded::exact(0.0)
+    "no-radius" [PP, PE, PH] 2.9: |inputs| inputs.square = BoundedValue::exact(0.0)
         => "The radii are forgotten" => "0 is used instead of R^2";
     "first-radius-only" [PP, PE] 2.75: |inputs| inputs.square = square(inputs.radii[0])
         => "The second object's radius is forgotten" => "r1^2 is used instead of R^2 = (r1 + r2)^2";
@@ -128,7 +128,7 @@ exchanges! {
         inputs.normal_square = inputs.normal().dot(inputs.normal());
     }
         => "The half-plane's point and its normal are exchanged" => "p and n are exchanged";
-    "no-normal-square" [PH] 2.6: |inputs| inputs.normal_square = Bounded::exact(1.0)
+    "no-normal-square" [PH] 2.6: |inputs| inputs.normal_square = BoundedValue::exact(1.0)
         => "The radius term is right for unit normals only" => "r^2 is used instead of r^2 (n.n)";
     "normal-length" [PH] 2.7: |inputs| inputs.normal_square = root(inputs.normal_square)
         => "The radius term has the length of the normal instead of its square"

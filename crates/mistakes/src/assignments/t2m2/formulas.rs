@@ -4,7 +4,7 @@
 //! data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
 //! quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
 use super::{Inputs, Subject};
-use fosssim_num::bounded::Bounded;
+use fosssim_num::bounded::BoundedValue;
 
 /// A quantity of a formula.
 pub struct Letter {
@@ -15,7 +15,7 @@ pub struct Letter {
     /// The letter's degree in the displacements.
     pub(crate) order: u8,
     /// The letter's value.
-    pub(crate) value: fn(&Inputs) -> Bounded,
+    pub(crate) value: fn(&Inputs) -> BoundedValue,
 }
 
 /// `weight` times the product of `letters` (indices into the formula's) in the coefficient of `t^power`.
@@ -40,13 +40,13 @@ pub(crate) struct Formula {
 
 impl Formula {
     /// Returns the values of the letters.
-    pub fn values(&self, inputs: &Inputs) -> Vec<Bounded> {
+    pub fn values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         self.letters.iter().map(|letter| (letter.value)(inputs)).collect()
     }
 
     /// Returns the coefficients, highest power first, untrimmed, from the values of the letters.
-    pub fn evaluate(&self, values: &[Bounded]) -> Vec<Bounded> {
-        let mut coefficients = vec![Bounded::default(); self.degree + 1];
+    pub fn evaluate(&self, values: &[BoundedValue]) -> Vec<BoundedValue> {
+        let mut coefficients = vec![BoundedValue::default(); self.degree + 1];
         for term in self.terms {
             let slot = &mut coefficients[self.degree - term.power];
             *slot = *slot + term.weight * product(values, term.letters);
@@ -55,15 +55,15 @@ impl Formula {
     }
 
     /// Returns the coefficients from the inputs.
-    pub fn polynomial(&self, inputs: &Inputs) -> Vec<Bounded> {
+    pub fn polynomial(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         self.evaluate(&self.values(inputs))
     }
 }
 
 /// Returns the product of the letters with these indices.
-pub(crate) fn product(values: &[Bounded], letters: &[usize]) -> Bounded {
+pub(crate) fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     match letters {
-        [] => Bounded::exact(1.0),
+        [] => BoundedValue::exact(1.0),
         [first, rest @ ..] => rest.iter().fold(values[*first], |product, &letter| product * values[letter]),
     }
 }
@@ -82,7 +82,7 @@ pub(crate) fn readings(subject: Subject) -> &'static [Formula] {
     }
 }
 
-const fn letter(name: &'static str, meaning: &'static str, order: u8, value: fn(&Inputs) -> Bounded) -> Letter {
+const fn letter(name: &'static str, meaning: &'static str, order: u8, value: fn(&Inputs) -> BoundedValue) -> Letter {
     Letter { name, meaning, order, value }
 }
 

@@ -1,19 +1,19 @@
 //! The vectors from which students make dot products.
 use super::Inputs;
 use fosssim_model::sim::PairKind;
-use fosssim_num::bounded::Bounded2;
+use fosssim_num::bounded::BoundedVector;
 
 /// A vector that a student may have put into a dot product.
 pub(crate) struct Ingredient {
     /// How a message calls it.
     pub name: &'static str,
     /// The ingredient's value.
-    pub value: fn(&Inputs) -> Bounded2,
+    pub value: fn(&Inputs) -> BoundedVector,
     /// How unlikely it is there.
     pub cost: f64,
 }
 
-const fn ingredient(name: &'static str, cost: f64, value: fn(&Inputs) -> Bounded2) -> Ingredient {
+const fn ingredient(name: &'static str, cost: f64, value: fn(&Inputs) -> BoundedVector) -> Ingredient {
     Ingredient { name, value, cost }
 }
 

@@ -2,7 +2,7 @@
 use fosssim_judge::fair::formulas::BoundedPointMotion;
 use fosssim_model::sim::{PairKind, PairMotion};
 use fosssim_num::{
-    bounded::{Bounded, Bounded2},
+    bounded::{BoundedValue, BoundedVector},
     vector::Vec2,
 };
 
@@ -10,22 +10,23 @@ use fosssim_num::{
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Inputs {
     /// Start positions of the particle and the other one or two points; of a half-plane its point and its normal.
-    pub x: [Bounded2; 3],
+    pub x: [BoundedVector; 3],
     /// Displacements likewise; a half-plane has none.
-    pub d: [Bounded2; 3],
+    pub d: [BoundedVector; 3],
     /// The radius of the particle and that of the other object (0 for a half-plane).
-    pub radii: [Bounded; 2],
+    pub radii: [BoundedValue; 2],
     /// The value for the square of the sum of the radii.
-    pub square: Bounded,
+    pub square: BoundedValue,
     /// The value for the squared length of the normal; 0 without one.
-    pub normal_square: Bounded,
+    pub normal_square: BoundedValue,
 }
 
 impl Inputs {
     /// Creates the inputs as they are.
     pub fn new(motion: &PairMotion) -> Self {
         let way = BoundedPointMotion::from;
-        let still = |point: Vec2| BoundedPointMotion { start: Bounded2::exact(point), shift: Bounded2::default() };
+        let still =
+            |point: Vec2| BoundedPointMotion { start: BoundedVector::exact(point), shift: BoundedVector::default() };
         let (ways, radii) = match *motion {
             PairMotion::Particles { centers: [one, two], radii } => ([way(one), way(two), still(Vec2::zeros())], radii),
             PairMotion::Edge { center, ends: [first, second], radii } => ([center, first, second].map(way), radii),
@@ -33,55 +34,55 @@ impl Inputs {
                 ([way(center), still(point), still(normal)], [radius, 0.0])
             }
         };
-        let radii = radii.map(Bounded::exact);
+        let radii = radii.map(BoundedValue::exact);
         let reach = radii[0] + radii[1];
         let (x, d) = (ways.map(|way| way.start), ways.map(|way| way.shift));
         let normal_square =
-            if motion.kind() == PairKind::ParticleHalfPlane { x[2].dot(x[2]) } else { Bounded::default() };
+            if motion.kind() == PairKind::ParticleHalfPlane { x[2].dot(x[2]) } else { BoundedValue::default() };
         Self { x, d, radii, square: reach * reach, normal_square }
     }
 }
 
 /// Returns the square root of a number that is not negative.
-pub(super) fn root(square: Bounded) -> Bounded {
+pub(super) fn root(square: BoundedValue) -> BoundedValue {
     let value = square.value.sqrt();
-    Bounded { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
+    BoundedValue { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
 }
 
 /// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
 impl Inputs {
-    pub fn x12(&self) -> Bounded2 {
+    pub fn x12(&self) -> BoundedVector {
         self.x[0] - self.x[1]
     }
-    pub fn x21(&self) -> Bounded2 {
+    pub fn x21(&self) -> BoundedVector {
         self.x[1] - self.x[0]
     }
-    pub fn x32(&self) -> Bounded2 {
+    pub fn x32(&self) -> BoundedVector {
         self.x[2] - self.x[1]
     }
-    pub fn x13(&self) -> Bounded2 {
+    pub fn x13(&self) -> BoundedVector {
         self.x[0] - self.x[2]
     }
-    pub fn x23(&self) -> Bounded2 {
+    pub fn x23(&self) -> BoundedVector {
         self.x[1] - self.x[2]
     }
-    pub fn d12(&self) -> Bounded2 {
+    pub fn d12(&self) -> BoundedVector {
         self.d[0] - self.d[1]
     }
-    pub fn d21(&self) -> Bounded2 {
+    pub fn d21(&self) -> BoundedVector {
         self.d[1] - self.d[0]
     }
-    pub fn d32(&self) -> Bounded2 {
+    pub fn d32(&self) -> BoundedVector {
         self.d[2] - self.d[1]
     }
-    pub fn d13(&self) -> Bounded2 {
+    pub fn d13(&self) -> BoundedVector {
         self.d[0] - self.d[2]
     }
-    pub fn d23(&self) -> Bounded2 {
+    pub fn d23(&self) -> BoundedVector {
         self.d[1] - self.d[2]
     }
     /// Returns the normal of the half-plane.
-    pub fn normal(&self) -> Bounded2 {
+    pub fn normal(&self) -> BoundedVector {
         self.x[2]
     }
 }

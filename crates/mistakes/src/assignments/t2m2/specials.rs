@@ -1,6 +1,6 @@
 //! Misunderstandings that have a formula of their own.
 use super::{Inputs, Subject, formulas::readings, inputs::root};
-use fosssim_num::bounded::{Bounded, Bounded2};
+use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
 /// A wrong polynomial, highest power first.
 pub struct Special {
@@ -13,7 +13,7 @@ pub struct Special {
     /// The exact form.
     pub detail: &'static str,
     /// The polynomial's coefficients.
-    pub(crate) polynomial: fn(&Inputs) -> Vec<Bounded>,
+    pub(crate) polynomial: fn(&Inputs) -> Vec<BoundedValue>,
 }
 
 /// Finds the misunderstanding with this key.
@@ -48,7 +48,7 @@ pub const SPECIALS: &[Special] = &[
         detail: "R^2 is used instead of R^2 (x32 + t d32).(x32 + t d32)",
         polynomial: |inputs| {
             let quartic = &readings(Subject::EdgeOverlap)[0];
-            let mut list = quartic.polynomial(&Inputs { square: Bounded::exact(0.0), ..*inputs });
+            let mut list = quartic.polynomial(&Inputs { square: BoundedValue::exact(0.0), ..*inputs });
             list[quartic.degree] = list[quartic.degree] + inputs.square;
             list
         },
@@ -60,7 +60,7 @@ pub const SPECIALS: &[Special] = &[
         detail: "1 is used instead of (x32 + t d32).(x32 + t d32)",
         polynomial: |inputs| {
             let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
-            vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), Bounded::exact(1.0) - w0.dot(e0)]
+            vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::exact(1.0) - w0.dot(e0)]
         },
     },
     Special {
@@ -93,14 +93,14 @@ pub const SPECIALS: &[Special] = &[
 ];
 
 /// Returns the approach of the particle and the point of the edge that was closest at the start.
-fn constant_alpha(inputs: &Inputs) -> Vec<Bounded> {
+fn constant_alpha(inputs: &Inputs) -> Vec<BoundedValue> {
     let (closing, n) = closest_at_start(inputs);
     vec![-closing.dot(closing), closing.dot(n)]
 }
 
 /// Returns how the particle and the point of the edge that was closest at the start close in on each other, and the
 /// vector from the one to the other.
-fn closest_at_start(inputs: &Inputs) -> (Bounded2, Bounded2) {
+fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
     let along = inputs.x32();
     let alpha = inputs.x12().dot(along) / along.dot(along);
     (inputs.d12() - alpha * inputs.d32(), alpha * along - inputs.x12())

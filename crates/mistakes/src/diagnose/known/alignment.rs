@@ -3,7 +3,7 @@ use super::{explain, resimulate::resimulate};
 use crate::{
     diagnose::{
         Explanation,
-        sampling::{Logged, ROUND_OFF, Scan, StepRecords, first_difference},
+        sampling::{LoggedNumbers, ROUND_OFF, Scan, StepRecords, first_difference},
     },
     student::{Mistake, Row, StepLog, Student, World, find},
 };
@@ -34,7 +34,7 @@ fn records_without(layout: Layout, row: &Row) -> u64 {
 
 /// Returns how many steps the opening holds when the records are read without the missing one; `None` when one of them
 /// is wrong.
-fn aligned_steps(scene: &Scene, layout: Layout, opening: &[Logged], row: &Row) -> Option<u64> {
+fn aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();
     let mut before = State { positions: initial.x, velocities: initial.v };

@@ -1,6 +1,6 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
-    resimulate::Correct,
+    resimulate::ApproachForm,
     shown::applicable,
     trials::{Program, Trials},
 };
@@ -39,7 +39,7 @@ impl<'a> Candidates<'a> {
     /// Sets the programs up.
     ///
     /// `correct` is the program that the mistakes are added to.
-    pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: Correct) -> Self {
+    pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: ApproachForm) -> Self {
         let trials = Trials::new(reference, scene, correct);
         let candidates = applicable(scene).map(|row| (row, trials.program(&[row]))).collect();
         let probes = scan.probes();

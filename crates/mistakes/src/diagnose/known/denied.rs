@@ -1,6 +1,6 @@
 //! Mistakes that a trace denies, whatever else is wrong with it: its stages are not empty, its zones do not stop.
 use crate::{
-    diagnose::sampling::{KeptStep, Logged, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference},
+    diagnose::sampling::{KeptStep, LoggedNumbers, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference},
     student::{CATALOGUE, Mistake, Row},
 };
 use fosssim_model::{
@@ -67,7 +67,7 @@ fn has_passes(sample: &KeptStep) -> bool {
 fn moves(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
-    let differs = |mid: &Logged| state_difference(&mid.state, end, &ROUND_OFF).is_some();
+    let differs = |mid: &LoggedNumbers| state_difference(&mid.state, end, &ROUND_OFF).is_some();
     is_sound && sample.records.mid.as_ref().is_some_and(differs)
 }
 

@@ -1,5 +1,5 @@
 //! The first place at which a wrong step differs from the reference.
-use super::resimulate::{Correct, resimulate};
+use super::resimulate::{ApproachForm, resimulate};
 use crate::{
     diagnose::{
         Example, ExamplePlace, StepRecord,
@@ -12,11 +12,11 @@ use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
 use fosssim_num::vector::at;
 
 /// Returns the example of a wrong step: where it differs first, what was expected there and what the submission logged.
-pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: Correct, kept: &KeptStep) -> Example {
+pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: ApproachForm, kept: &KeptStep) -> Example {
     let mut capture = Capture::new(&scene.collision);
     // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
     let _end = reference.step(kept.step, &kept.before, &mut capture);
-    if correct == Correct::RightApproach {
+    if correct == ApproachForm::RightApproach {
         let world = World::new(scene.clone(), correct.with(None));
         capture.records = resimulate(&world, &kept.before, &mut StepLog::default()).unwrap_or_default();
     }

@@ -27,13 +27,13 @@ pub use shown::can_show;
 use super::{
     Detail, Explanation,
     about::About,
-    sampling::{ROUND_OFF, Reference, Sampled, Scan, Source, first_difference, sampled},
+    sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, first_difference, sample_trace},
 };
 use crate::student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use candidates::Candidates;
 use fosssim_model::{scene::Scene, trace::Layout};
-use resimulate::{Correct, resimulate};
-use several::Several;
+use resimulate::{ApproachForm, resimulate};
+use several::SeveralRows;
 
 /// Searches the catalogue for the mistake that explains this trace.
 ///
@@ -50,13 +50,13 @@ use several::Several;
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    let Sampled { mut reference, scan, .. } = sampled(scene, Source::whole(trace));
+    let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::whole(trace));
     known_or_open(&mut reference, scene, scan).explanations
 }
 
 /// The catalogue's explanations of a trace, and what they leave open.
 #[derive(Debug, Default)]
-pub(super) struct Known {
+pub(super) struct KnownMistakes {
     /// The mistakes, the likeliest first.
     pub(super) explanations: Vec<Explanation>,
     /// The kept steps, where no mistake explains all of them.
@@ -66,37 +66,37 @@ pub(super) struct Known {
 }
 
 /// Returns the catalogue's explanations of kept steps, and the steps themselves where no mistake explains all of them.
-pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> Known {
-    let only = |one: Explanation| Known { explanations: vec![one], ..Known::default() };
+pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> KnownMistakes {
+    let only = |one: Explanation| KnownMistakes { explanations: vec![one], ..KnownMistakes::default() };
     if let Some(missing) = alignment::missing_record(scene, &scan) {
         return only(missing);
     }
     if scan.outline.is_of_other_scene(scene) {
         let (layout, outline) = (Layout::for_scene(scene), &scan.outline);
         let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
-        return only(Explanation::of_other_scene(has_length));
+        return only(Explanation::for_other_scene(has_length));
     }
     let denies = denied::denied(scene, &scan);
-    let (mut explanations, is_settled) = of_wrong_steps(reference, scene, &mut scan);
+    let (mut explanations, is_settled) = explain_wrong_steps(reference, scene, &mut scan);
     explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
     if !explanations.is_empty() || scan.outline.padded == 0 {
-        return Known { explanations, open: (!is_settled).then_some(scan), denies };
+        return KnownMistakes { explanations, open: (!is_settled).then_some(scan), denies };
     }
     // Reading drops what the course's library would have dropped, so such steps look right.
     let padded = find("log-padded").map(|row| explain(row, (scan.outline.padded, scan.outline.padded)));
-    Known { explanations: padded.into_iter().collect(), open: None, denies }
+    KnownMistakes { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
 /// Returns the catalogue's explanations, and whether there is nothing else to say. May leave the steps as a program
 /// with the right approach sees them.
-fn of_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
+fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
     }
     let mut partly = None;
-    for correct in [Correct::Supplied, Correct::RightApproach] {
+    for correct in [ApproachForm::Supplied, ApproachForm::RightApproach] {
         // The fair rules accept the right approach, too; behind it may be a mistake of another kind.
-        if correct == Correct::RightApproach && !take_right_approach(scan, scene) {
+        if correct == ApproachForm::RightApproach && !take_right_approach(scan, scene) {
             break;
         }
         let (explanation, is_complete) = best(reference, scene, scan, correct);
@@ -117,7 +117,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     if scene.edges.is_empty() {
         return false;
     }
-    let world = World::new(scene.clone(), Correct::RightApproach.with(None));
+    let world = World::new(scene.clone(), ApproachForm::RightApproach.with(None));
     let samples = std::mem::take(&mut scan.wrong).into_iter().chain(std::mem::take(&mut scan.right));
     for mut sample in samples {
         let logged = sample.records.end.polynomials.len();
@@ -140,8 +140,8 @@ fn together(
     reference: &mut Reference<'_>,
     scene: &Scene,
     scan: &Scan,
-    correct: Correct,
-    several: &Several,
+    correct: ApproachForm,
+    several: &SeveralRows,
 ) -> Vec<Explanation> {
     let of_row = |(row, others): (&&'static Row, &Vec<&'static Row>)| {
         let rivals = several.rivals.iter().filter(|_| is_empty_stage(row));
@@ -157,7 +157,12 @@ fn together(
 
 /// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. None where no
 /// row reproduces enough, or where a correct variant does.
-fn best(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> (Option<Explanation>, bool) {
+fn best(
+    reference: &mut Reference<'_>,
+    scene: &Scene,
+    scan: &Scan,
+    correct: ApproachForm,
+) -> (Option<Explanation>, bool) {
     let mut scores = Candidates::new(reference, scene, scan, correct).best();
     scores.sort_by_key(|score| plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return (None, false) };

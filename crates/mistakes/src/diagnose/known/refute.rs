@@ -35,7 +35,7 @@ pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u6
     }
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
     // The fair rules accept the nearest point of an edge, too: where that shows, other contact vectors may pass.
-    let accepted = world.of(Student::new(Some(Mistake::ParticleEdgeContactClamped)));
+    let accepted = world.for_student(Student::new(Some(Mistake::ParticleEdgeContactClamped)));
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);
     let each = step_work(scene);

@@ -1,6 +1,6 @@
 //! Steps of a student's program, from a submission's own state.
 use crate::{
-    diagnose::sampling::{Logged, StepRecords},
+    diagnose::sampling::{LoggedNumbers, StepRecords},
     student::{Mistake, Record, State, StepLog, Student, World, step},
 };
 use fosssim_model::{
@@ -10,14 +10,14 @@ use fosssim_model::{
 
 /// The particle-edge approach of a submission, right in either form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Correct {
+pub(super) enum ApproachForm {
     /// The program uses the particle-edge approach that the course supplies.
     Supplied,
     /// The program has put that right.
     RightApproach,
 }
 
-impl Correct {
+impl ApproachForm {
     /// Returns a correct program of this kind, with a mistake.
     pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
         let student = Student::new(mistake);
@@ -47,7 +47,7 @@ pub(super) fn resimulate(
     log: &mut StepLog<'_>,
 ) -> Option<StepRecords> {
     let mut state = State { x: before.positions.clone(), v: before.velocities.clone() };
-    let mut records: Vec<Logged> = Vec::new();
+    let mut records: Vec<LoggedNumbers> = Vec::new();
     step(world, &mut state, log, &mut |state, log| {
         records.push(Record::new(world.student, &world.scene.collision, state, log).into());
     })

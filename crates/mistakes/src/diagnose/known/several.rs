@@ -3,7 +3,7 @@
 //! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was
 //! logged. Only a set that reproduces everything, right steps included, and of which no row can be left out, explains
 //! anything.
-use super::{plausibility, resimulate::Correct, shown::applicable, trials::Trials};
+use super::{plausibility, resimulate::ApproachForm, shown::applicable, trials::Trials};
 use crate::{
     diagnose::sampling::{KeptStep, Reference, Scan},
     student::{Area, Mistake, Row, RowKind},
@@ -18,7 +18,7 @@ const MOST_SETS: usize = 1 << 8;
 const WORK: u64 = 700_000;
 
 /// Rows that reproduce a trace together.
-pub(super) struct Several {
+pub(super) struct SeveralRows {
     /// The rows: empty stages first, then in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
     /// Rows that are as good, for each of these.
@@ -30,7 +30,12 @@ pub(super) struct Several {
 }
 
 /// Returns the set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
-pub(super) fn several(reference: &Reference<'_>, scene: &Scene, scan: &Scan, correct: Correct) -> Option<Several> {
+pub(super) fn several(
+    reference: &Reference<'_>,
+    scene: &Scene,
+    scan: &Scan,
+    correct: ApproachForm,
+) -> Option<SeveralRows> {
     let search = Search::new(reference, scene, scan, correct);
     if !Layout::for_scene(scene).polynomials {
         return search.together();
@@ -61,7 +66,7 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(reference: &'a Reference<'_>, scene: &'a Scene, scan: &'a Scan, correct: Correct) -> Self {
+    fn new(reference: &'a Reference<'_>, scene: &'a Scene, scan: &'a Scan, correct: ApproachForm) -> Self {
         Self { scene, trials: Trials::new(reference, scene, correct), scan, probes: scan.probes() }
     }
 
@@ -76,7 +81,7 @@ impl<'a> Search<'a> {
     }
 
     /// Adds rows to a set of empty stages until it reproduces everything.
-    fn from(&self, mut set: Vec<&'static Row>) -> Option<Several> {
+    fn from(&self, mut set: Vec<&'static Row>) -> Option<SeveralRows> {
         // The rows that were as good as each row when that one was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);
@@ -104,13 +109,13 @@ impl<'a> Search<'a> {
             others
                 .retain(|other| !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.goal()));
         }
-        Some(Several { rows: set, same_as: alike, rivals: Vec::new(), samples })
+        Some(SeveralRows { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
     /// Mistakes of a program whose steps log states: none carries a step further, all together do. Functions that are
     /// not written come first, then one mistake beside such functions, then two mistakes; none where two sets that have
     /// nothing in common do.
-    fn together(&self) -> Option<Several> {
+    fn together(&self) -> Option<SeveralRows> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
         let mut empty = subsets(&self.stages());
@@ -119,7 +124,12 @@ impl<'a> Search<'a> {
         let explains = |set: &Vec<&'static Row>| self.explains(set);
         if let Some(rows) = empty.iter().filter(|set| set.len() > 1).find(|set| explains(set)) {
             let same_as = rows.iter().map(|_| Vec::new()).collect();
-            return Some(Several { rows: rows.clone(), same_as, rivals: Vec::new(), samples: self.confirmed(rows)? });
+            return Some(SeveralRows {
+                rows: rows.clone(),
+                same_as,
+                rivals: Vec::new(),
+                samples: self.confirmed(rows)?,
+            });
         }
         let with = |set: &Vec<&'static Row>, row| set.iter().copied().chain([row]).collect();
         let beside = |size: usize| {
@@ -134,7 +144,7 @@ impl<'a> Search<'a> {
 
     /// Returns the one of these sets that reproduces everything, with the rows that do as well in the place of one of
     /// its own.
-    fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<Several> {
+    fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
             if self.trials.exceed(WORK) {
@@ -154,7 +164,7 @@ impl<'a> Search<'a> {
         };
         let same_as: Vec<Vec<&'static Row>> = first.iter().map(instead).collect();
         let is_told = found.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
-        is_told.then(|| Several { rows: first, same_as, rivals: Vec::new(), samples })
+        is_told.then(|| SeveralRows { rows: first, same_as, rivals: Vec::new(), samples })
     }
 
     /// Returns whether these reproduce everything, and none of them can be left out.

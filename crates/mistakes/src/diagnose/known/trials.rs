@@ -1,5 +1,5 @@
 //! Programs with mistakes of the catalogue, tried on kept steps.
-use super::resimulate::{Correct, resimulate, step_work};
+use super::resimulate::{ApproachForm, resimulate, step_work};
 use crate::{
     diagnose::sampling::{
         KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
@@ -13,7 +13,7 @@ use std::cell::Cell;
 pub(super) struct Trials<'a> {
     /// The scene, for programs of all students.
     world: World,
-    correct: Correct,
+    correct: ApproachForm,
     round_off: Tolerance,
     step_work: u64,
     /// The polynomials that were computed so far.
@@ -31,7 +31,7 @@ pub(super) struct Program {
 
 impl<'a> Trials<'a> {
     /// Creates the trials on a scene; `correct` is the program to which mistakes are added.
-    pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: Correct) -> Self {
+    pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: ApproachForm) -> Self {
         let world = World::new(scene.clone(), Student::default());
         let (round_off, step_work) = (Tolerance::for_scene(scene), step_work(scene));
         Self { world, correct, round_off, step_work, work: Cell::new(0), left: &reference.trials }
@@ -51,7 +51,7 @@ impl<'a> Trials<'a> {
     pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
         let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
         let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
-        Program { world: self.world.of(student), logs_wrongly }
+        Program { world: self.world.for_student(student), logs_wrongly }
     }
 
     /// Returns how far the program's step is what was logged: 1 is all the way, polynomials are the first half.

@@ -5,7 +5,7 @@
 //! small.
 use fosssim_judge::fair::compare::compare;
 use fosssim_num::{
-    bounded::{Bounded, UNIT_ROUNDOFF},
+    bounded::{BoundedValue, UNIT_ROUNDOFF},
     tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
@@ -20,12 +20,12 @@ pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
 }
 
 /// Returns the expected coefficient of a power, 0 beyond the degree.
-pub(super) fn expected_at(expected: &[Bounded], power: usize) -> Bounded {
-    expected.len().checked_sub(power + 1).map_or(Bounded::default(), |index| expected[index])
+pub(super) fn expected_at(expected: &[BoundedValue], power: usize) -> BoundedValue {
+    expected.len().checked_sub(power + 1).map_or(BoundedValue::default(), |index| expected[index])
 }
 
 /// Returns whether one logged coefficient is `scale` times the expected one. NaN never is.
-pub(super) fn coefficient_matches(expected: Bounded, logged: Option<f64>, scale: f64) -> bool {
+pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, scale: f64) -> bool {
     let room = TOLERANCE * scale.abs() * expected.bound;
     match logged {
         Some(value) => (value - scale * expected.value).abs() <= room,
@@ -35,23 +35,23 @@ pub(super) fn coefficient_matches(expected: Bounded, logged: Option<f64>, scale:
 
 /// Returns whether the logged polynomial is `scale` times the expected one. A program may also get its coefficients
 /// from values of the polynomial, which spreads the rounding of the largest over all.
-pub(super) fn matches(expected: &[Bounded], logged: &[f64], scale: f64) -> bool {
+pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
     let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;
     (0..expected.len().max(logged.len())).all(|power| {
-        let Bounded { value, bound } = expected_at(expected, power);
-        coefficient_matches(Bounded { value, bound: bound.max(least) }, logged_at(logged, power), scale)
+        let BoundedValue { value, bound } = expected_at(expected, power);
+        coefficient_matches(BoundedValue { value, bound: bound.max(least) }, logged_at(logged, power), scale)
     })
 }
 
 /// Returns the scale that brings the expected polynomial closest to the logged one, each coefficient weighing as much
 /// as it is sure; `None` if nothing sure is left, or if the scale is not positive.
-pub(super) fn fitted_scale(expected: &[Bounded], logged: &[f64]) -> Option<f64> {
+pub(super) fn fitted_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64> {
     scale_fitted_to(expected, logged, |_| true)
 }
 
 /// Returns the scale as [`fitted_scale`] does, from the coefficients of some powers.
-pub(super) fn scale_fitted_to(expected: &[Bounded], logged: &[f64], power: impl Fn(usize) -> bool) -> Option<f64> {
+pub(super) fn scale_fitted_to(expected: &[BoundedValue], logged: &[f64], power: impl Fn(usize) -> bool) -> Option<f64> {
     let (mut above, mut below) = (0.0, 0.0);
     for power in (0..expected.len()).filter(|&index| power(index)) {
         let (coefficient, Some(value)) = (expected_at(expected, power), logged_at(logged, power)) else { continue };
@@ -66,12 +66,12 @@ pub(super) fn scale_fitted_to(expected: &[Bounded], logged: &[f64], power: impl 
 }
 
 /// Returns whether a coefficient is more than rounding.
-pub(super) fn is_sure(coefficient: Bounded) -> bool {
+pub(super) fn is_sure(coefficient: BoundedValue) -> bool {
     coefficient.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * coefficient.bound
 }
 
 /// Returns whether the logged polynomial is right: the expected one times some positive scale.
-pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
+pub(super) fn is_right(expected: &[BoundedValue], logged: &[f64]) -> bool {
     compare(expected, logged, &[1.0]).is_ok()
 }
 
@@ -79,8 +79,8 @@ pub(super) fn is_right(expected: &[Bounded], logged: &[f64]) -> bool {
 mod tests {
     use super::*;
 
-    fn exact(values: &[f64]) -> Vec<Bounded> {
-        values.iter().map(|&value| Bounded::rounded(value)).collect()
+    fn exact(values: &[f64]) -> Vec<BoundedValue> {
+        values.iter().map(|&value| BoundedValue::rounded(value)).collect()
     }
 
     #[test]

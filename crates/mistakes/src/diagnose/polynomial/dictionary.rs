@@ -4,7 +4,7 @@ use crate::assignments::t2m2::{
     extras::{HALF_PLANE_EXTRAS, extras},
     formulas::{Formula, Letter, product},
 };
-use fosssim_num::bounded::Bounded;
+use fosssim_num::bounded::BoundedValue;
 use std::borrow::Cow;
 
 /// A product of letters.
@@ -56,8 +56,8 @@ impl Dictionary {
     }
 
     /// Returns the values of all products, in their order.
-    pub fn values(&self, inputs: &Inputs) -> Vec<Bounded> {
-        let letters: Vec<Bounded> = self.letters.iter().map(|letter| (letter.value)(inputs)).collect();
+    pub fn values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
+        let letters: Vec<BoundedValue> = self.letters.iter().map(|letter| (letter.value)(inputs)).collect();
         self.products.iter().map(|entry| product(&letters, &entry.letters)).collect()
     }
 

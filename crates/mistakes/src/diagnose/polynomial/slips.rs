@@ -6,7 +6,7 @@ use crate::assignments::t2m2::{
     ingredients::{Ingredient, ingredients},
 };
 use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Substitute};
-use fosssim_num::bounded::Bounded;
+use fosssim_num::bounded::BoundedValue;
 
 /// A quantity that is tried in a letter's place.
 enum Trial<'a> {
@@ -21,16 +21,16 @@ enum Trial<'a> {
 }
 
 impl Trial<'_> {
-    fn value(&self, slot: usize, values: &[Bounded], inputs: &Inputs) -> Bounded {
+    fn value(&self, slot: usize, values: &[BoundedValue], inputs: &Inputs) -> BoundedValue {
         match self {
             Self::Scaled(factor) => *factor * values[slot],
             Self::Letter(other) => values[*other],
             Self::Dot(one, two, sign) => *sign * (one.value)(inputs).dot((two.value)(inputs)),
-            Self::One => Bounded::exact(1.0),
+            Self::One => BoundedValue::exact(1.0),
         }
     }
 
-    fn told(&self, letters: &[Letter]) -> Substitute {
+    fn substitute(&self, letters: &[Letter]) -> Substitute {
         match self {
             Self::Scaled(factor) => Substitute::Scaled(*factor),
             Self::Letter(other) => Substitute::Letter(letters[*other].name.into()),
@@ -86,7 +86,7 @@ fn in_formula(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> V
                 formula.evaluate(&values)
             });
             let Some((reproduced, rescaled)) = counted else { continue };
-            let stand = trial.told(formula.letters);
+            let stand = trial.substitute(formula.letters);
             found.push(Candidate {
                 guess: Guess::Quantity(trial.guess()),
                 details: vec![PolynomialDetail::StandsFor { reading, letter: letter.name.into(), stand }],

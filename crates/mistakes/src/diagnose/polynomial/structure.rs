@@ -6,7 +6,7 @@ use super::{
 use crate::assignments::t2m2::{Subject, formulas::readings};
 use crate::diagnose::{Guess, ListGuess, PolynomialDetail};
 use fosssim_num::{
-    bounded::Bounded,
+    bounded::BoundedValue,
     tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
 };
 
@@ -78,11 +78,11 @@ fn is_single(case: &Case) -> bool {
     is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(close)
 }
 
-fn negated(list: &[Bounded]) -> Vec<Bounded> {
+fn negated(list: &[BoundedValue]) -> Vec<BoundedValue> {
     list.iter().map(|&coefficient| -coefficient).collect()
 }
 
-fn reversed(list: &[Bounded]) -> Vec<Bounded> {
+fn reversed(list: &[BoundedValue]) -> Vec<BoundedValue> {
     list.iter().rev().copied().collect()
 }
 
@@ -91,7 +91,7 @@ fn predicted(
     guess: ListGuess,
     detail: Option<PolynomialDetail>,
     cost: f64,
-    predict: impl Fn(&Case) -> Vec<Bounded>,
+    predict: impl Fn(&Case) -> Vec<BoundedValue>,
 ) -> Option<Candidate> {
     let (reproduced, scaled) = study.count(predict)?;
     Some(general(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
@@ -99,13 +99,13 @@ fn predicted(
 
 /// Adds guesses with the polynomial's own coefficients in another order or with another sign.
 fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
-    let mut check = |guess, cost, change: &dyn Fn(&[Bounded]) -> Vec<Bounded>| {
+    let mut check = |guess, cost, change: &dyn Fn(&[BoundedValue]) -> Vec<BoundedValue>| {
         found.extend(predicted(study, guess, None, cost, |case| change(&case.expected)));
     };
     check(ListGuess::Reversed, 1.0, &reversed);
     check(ListGuess::Negated, 1.0, &negated);
     check(ListGuess::ReversedNegated, 2.5, &|list| negated(&reversed(list)));
-    check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([Bounded::exact(0.0)]).collect());
+    check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([BoundedValue::exact(0.0)]).collect());
     for degree in 1..=study.subject.degree() {
         for other in 0..degree {
             let detail = Some(PolynomialDetail::Exchanged { powers: [degree, other] });
@@ -155,10 +155,10 @@ fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     if !is_new || study.subject.degree() < 2 {
         return None;
     }
-    let factor = Bounded { value: factor, bound: 16.0 * factor };
+    let factor = BoundedValue { value: factor, bound: 16.0 * factor };
     let detail = PolynomialDetail::Displacements(factor.value);
     predicted(study, ListGuess::DisplacementScale, Some(detail), 3.0, |case| {
-        let mut power = Bounded::exact(1.0);
+        let mut power = BoundedValue::exact(1.0);
         let mut list = reversed(&case.expected);
         for coefficient in &mut list {
             *coefficient = *coefficient * power;

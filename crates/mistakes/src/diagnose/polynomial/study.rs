@@ -9,7 +9,7 @@ use crate::assignments::t2m2::{
 };
 use crate::diagnose::{Guess, PolynomialDetail};
 use fosssim_judge::fair::formulas::BoundedPairMotion;
-use fosssim_num::{bounded::Bounded, tolerances::LEADING_COEFFICIENT};
+use fosssim_num::{bounded::BoundedValue, tolerances::LEADING_COEFFICIENT};
 
 fosssim_model::drops_leading!();
 
@@ -35,7 +35,7 @@ pub(super) struct Case<'a> {
     /// The inputs of the formulas.
     pub inputs: Inputs,
     /// The coefficients that should have been logged; of the quintic the supplied form.
-    pub expected: Vec<Bounded>,
+    pub expected: Vec<BoundedValue>,
     /// Whether the logged ones are right, in any accepted form.
     pub right: bool,
     /// The positive factor that the submission's polynomials seem to carry here.
@@ -108,7 +108,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Returns how many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with
     /// any positive one; `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed
     /// another scale.
-    pub fn count(&self, predict: impl Fn(&Case) -> Vec<Bounded>) -> Option<(usize, bool)> {
+    pub fn count(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
             matches(&predicted, case.logged, case.scale) || matches(&predicted, case.logged, 1.0)
@@ -282,7 +282,7 @@ pub(super) fn spread(length: usize, count: usize) -> impl Iterator<Item = usize>
 
 /// Returns whether a polynomial has one sure coefficient: it fits anything of its sign at some scale, which says
 /// nothing.
-fn fits_at_any_scale(predicted: &[Bounded], case: &Case) -> bool {
+fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     if predicted.iter().filter(|coefficient| is_sure(**coefficient)).count() < 2 {
         return matches(predicted, case.logged, case.scale);
     }

@@ -7,7 +7,7 @@ use super::{
 };
 use crate::assignments::t2m2::{Reading, formulas::Formula};
 use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
-use fosssim_num::bounded::Bounded;
+use fosssim_num::bounded::BoundedValue;
 
 /// The number of wrong samples of a fit, which uses half as many right ones.
 const MOST_ROWS: usize = 240;
@@ -36,7 +36,7 @@ const UNKNOWN: f64 = 20.0;
 /// A change of one coefficient.
 enum Edit {
     /// The term carries a factor.
-    Factor(Bounded),
+    Factor(BoundedValue),
     /// Products with their additional weights.
     Terms(Vec<(usize, f64)>),
     /// Nothing was found.
@@ -94,8 +94,8 @@ struct Fitting<'a> {
     formula: &'static Formula,
     reading: Reading,
     dictionary: Dictionary,
-    expected: Vec<Vec<Bounded>>,
-    products: Vec<Vec<Bounded>>,
+    expected: Vec<Vec<BoundedValue>>,
+    products: Vec<Vec<BoundedValue>>,
 }
 
 impl<'a> Fitting<'a> {
@@ -110,11 +110,11 @@ impl<'a> Fitting<'a> {
         &self.study.cases[index]
     }
 
-    fn coefficient(&self, index: usize, power: usize) -> Bounded {
+    fn coefficient(&self, index: usize, power: usize) -> BoundedValue {
         expected_at(&self.expected[index], power)
     }
 
-    fn holds(&self, index: usize, power: usize, predicted: Bounded) -> bool {
+    fn holds(&self, index: usize, power: usize, predicted: BoundedValue) -> bool {
         let case = self.case(index);
         coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
     }
@@ -123,7 +123,7 @@ impl<'a> Fitting<'a> {
         (0..self.study.cases.len()).any(|index| !self.holds(index, power, self.coefficient(index, power)))
     }
 
-    fn predicted(&self, index: usize, power: usize, edit: Option<&Edit>) -> Bounded {
+    fn predicted(&self, index: usize, power: usize, edit: Option<&Edit>) -> BoundedValue {
         let expected = self.coefficient(index, power);
         match edit {
             None | Some(Edit::Unknown) => expected,
@@ -151,7 +151,7 @@ impl<'a> Fitting<'a> {
     }
 
     /// Returns a constant factor of the coefficient.
-    fn factor(&self, power: usize) -> Option<(Bounded, f64)> {
+    fn factor(&self, power: usize) -> Option<(BoundedValue, f64)> {
         let ratios = (0..self.study.cases.len()).filter_map(|index| {
             let (case, expected) = (self.case(index), self.coefficient(index, power));
             let value = logged_at(case.logged, power).unwrap_or(0.0);
@@ -161,8 +161,11 @@ impl<'a> Fitting<'a> {
         // The sum turns -0 into 0.
         let simple = (factor * 12.0).round() / 12.0 + 0.0;
         let is_simple = (factor - simple).abs() < 1e-12;
-        let factor =
-            if is_simple { Bounded::exact(simple) } else { Bounded { value: factor, bound: 16.0 * factor.abs() } };
+        let factor = if is_simple {
+            BoundedValue::exact(simple)
+        } else {
+            BoundedValue { value: factor, bound: 16.0 * factor.abs() }
+        };
         let cost = match factor.value {
             -1.0 | 0.0 | 0.5 | 2.0 => 3.2,
             _ if is_simple => 5.0,

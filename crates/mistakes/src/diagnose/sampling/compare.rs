@@ -9,7 +9,7 @@ use fosssim_model::{
     trace::{Layout, LenientFrame, LoggedImpulse, PolynomialLog},
 };
 use fosssim_num::{
-    bounded::Bounded,
+    bounded::BoundedValue,
     polynomial::trim,
     tolerances::{
         KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NEWTON_STATE, KNOWN_NORMAL, KNOWN_STATE,
@@ -63,7 +63,7 @@ pub const SINGLE_PRECISION: Tolerance =
 
 /// The numbers of one record.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Logged {
+pub struct LoggedNumbers {
     /// Positions and velocities.
     pub state: State,
     /// The impulse list.
@@ -72,7 +72,7 @@ pub struct Logged {
     pub polynomials: PolynomialLog,
 }
 
-impl Logged {
+impl LoggedNumbers {
     fn values(&self) -> impl Iterator<Item = f64> {
         let of_impulse = |impulse: &LoggedImpulse| [impulse.normal.x, impulse.normal.y, impulse.time];
         let numbers = self.state.positions.iter().chain(&self.state.velocities).chain(&self.polynomials.coefficients);
@@ -91,15 +91,15 @@ impl Logged {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StepRecords {
     /// The mid record, where scenes have one.
-    pub mid: Option<Logged>,
+    pub mid: Option<LoggedNumbers>,
     /// The end record.
-    pub end: Logged,
+    pub end: LoggedNumbers,
 }
 
 impl StepRecords {
     /// Returns whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
-        self.end.values().chain(self.mid.iter().flat_map(Logged::values)).all(f64::is_finite)
+        self.end.values().chain(self.mid.iter().flat_map(LoggedNumbers::values)).all(f64::is_finite)
     }
 }
 
@@ -120,13 +120,13 @@ pub enum StepDifference {
     MidLists,
 }
 
-impl From<&LenientFrame> for Logged {
+impl From<&LenientFrame> for LoggedNumbers {
     fn from(frame: &LenientFrame) -> Self {
         Self { state: frame.state.clone(), impulses: frame.impulses.clone(), polynomials: frame.polynomials.clone() }
     }
 }
 
-impl From<Record> for Logged {
+impl From<Record> for LoggedNumbers {
     fn from(record: Record) -> Self {
         let mut polynomials = PolynomialLog::default();
         record.polynomials.iter().flatten().for_each(|coefficients| polynomials.push(trim(coefficients)));
@@ -190,7 +190,7 @@ pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool
 }
 
 /// Returns whether both are the same, of a polynomial as formulas yield it, nothing dropped.
-pub fn same_formula(expected: &[Bounded], actual: &[f64], by: &Tolerance) -> bool {
+pub fn same_formula(expected: &[BoundedValue], actual: &[f64], by: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
     same_polynomial(trim(&values), actual, by)
 }

@@ -9,19 +9,19 @@ mod source;
 
 pub use capture::Capture;
 pub use compare::{
-    Logged, PLAIN, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula, same_impulse,
-    same_polynomial, state_difference,
+    LoggedNumbers, PLAIN, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula,
+    same_impulse, same_polynomial, state_difference,
 };
 pub use detections::{Detections, Sample, bodies};
 pub use reference::Reference;
 pub use scan::{KeptStep, Scan, Scanner};
 pub use source::{Source, StepFrames, StepReader};
 
-use super::{Explanation, not_finite::First};
+use super::{Explanation, not_finite::FirstNotFinite};
 use fosssim_model::scene::Scene;
 
 /// The material of explanations.
-pub struct Sampled<'a> {
+pub struct TraceSamples<'a> {
     /// The reference, with what is left of its budget.
     pub reference: Reference<'a>,
     /// The explanation of the first value that is no finite number.
@@ -33,16 +33,17 @@ pub struct Sampled<'a> {
 }
 
 /// Reads a trace once.
-pub fn sampled<'a>(scene: &'a Scene, source: Source<'a>) -> Sampled<'a> {
+pub fn sample_trace<'a>(scene: &'a Scene, source: Source<'a>) -> TraceSamples<'a> {
     let (mut steps, mut reference) = (StepReader::new(scene, source), Reference::new(scene));
-    let (mut first, mut scanner, mut detections) = (First::default(), Scanner::new(scene), Detections::new(scene));
+    let (mut first, mut scanner, mut detections) =
+        (FirstNotFinite::default(), Scanner::new(scene), Detections::new(scene));
     first.begin(&steps.frames);
     while let Some(step) = steps.next() {
         first.step(&mut reference, scene, step, &steps.frames);
         scanner.step(&mut reference, step, &steps.frames);
         detections.step(&mut reference, step, &steps.frames);
     }
-    Sampled {
+    TraceSamples {
         not_finite: first.explanation(),
         scan: scanner.into_scan(steps.outline),
         detections: detections.into_samples(),

@@ -2,7 +2,8 @@
 use super::{
     capture::Capture,
     compare::{
-        Logged, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, Tolerance, first_difference, same_polynomial,
+        LoggedNumbers, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, Tolerance, first_difference,
+        same_polynomial,
     },
     reference::Reference,
     source::{Outline, StepFrames},
@@ -226,7 +227,7 @@ impl Scanner {
         &self,
         before: &LenientFrame,
         actual: &StepRecords,
-        strip: impl Fn(&mut Logged, &LenientFrame) -> bool,
+        strip: impl Fn(&mut LoggedNumbers, &LenientFrame) -> bool,
     ) -> bool {
         let mut records = actual.clone();
         let stripped = records.mid.as_mut().is_none_or(|mid| strip(mid, before)) && strip(&mut records.end, before);
@@ -236,7 +237,7 @@ impl Scanner {
 
 impl KeptStep {
     fn bytes(&self) -> usize {
-        let mid = self.records.mid.as_ref().map_or(0, Logged::bytes);
+        let mid = self.records.mid.as_ref().map_or(0, LoggedNumbers::bytes);
         16 * self.before.positions.len() + mid + self.records.end.bytes()
     }
 }

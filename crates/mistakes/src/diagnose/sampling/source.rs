@@ -1,5 +1,5 @@
 //! The records of a trace as explanations read them: step by step, as far as they were kept.
-use super::compare::Logged;
+use super::compare::LoggedNumbers;
 use fosssim_judge::kept::{KeptTrace, LONGEST};
 use fosssim_model::{
     scene::Scene,
@@ -48,7 +48,7 @@ pub struct StepFrames {
 #[derive(Debug, Default)]
 pub struct Outline {
     /// The first records.
-    pub opening: Vec<Logged>,
+    pub opening: Vec<LoggedNumbers>,
     opening_memory: usize,
     /// Records whose polynomials have small leading coefficients, which the course's library drops.
     pub padded: u64,
@@ -80,7 +80,7 @@ impl Outline {
             Ok(()) => {
                 self.padded += u64::from(!frame.plain);
                 if self.opening.len() < OPENING && self.opening_memory < OPENING_MEMORY {
-                    let logged = Logged::from(&*frame);
+                    let logged = LoggedNumbers::from(&*frame);
                     self.opening_memory += logged.bytes();
                     self.opening.push(logged);
                 }
@@ -113,7 +113,7 @@ impl<'a> StepReader<'a> {
     /// Reads the first record.
     pub fn new(scene: &Scene, source: Source<'a>) -> Self {
         let layout = Layout::for_scene(scene);
-        let mut reader = Lenient::of_slice(source.beginning, layout).with_limit(record_memory(scene));
+        let mut reader = Lenient::from_slice(source.beginning, layout).with_limit(record_memory(scene));
         let (mut frames, mut outline) = (StepFrames::default(), Outline::default());
         let next = outline.read(&mut reader, &mut frames.before).then_some(1);
         Self { layout, reader, is_whole: source.is_whole, next, frames, outline }

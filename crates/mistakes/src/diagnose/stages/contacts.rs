@@ -80,14 +80,14 @@ struct ContactStage {
 /// Returns the fault in the contacts of `continuous-time`, whose polynomials are right.
 pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
-    facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.look(facts));
+    facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.compare_step(facts));
     // A wrong time may make decisions wrong, too.
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
 /// Returns the fault in the contacts at the end of steps, each with the reference's: what parts first counts, since
 /// what follows in the pass may follow from it.
-pub(super) fn of_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
+pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {
         let first = (0..ours.len().max(theirs.len())).find(|&index| {
@@ -116,7 +116,7 @@ pub(super) fn of_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) ->
 
 impl ContactStage {
     /// Looks at contacts up to the first that is not the expected one; those behind it depend on that.
-    fn look(&mut self, facts: &StepFacts) {
+    fn compare_step(&mut self, facts: &StepFacts) {
         let place = |theirs: &LoggedImpulse| {
             let theirs = theirs.pair()?;
             facts.detections.iter().position(|(pair, _)| *pair == theirs)

@@ -1,6 +1,6 @@
 //! The reference's work in a step from the submission's own state, event by event.
 use crate::diagnose::sampling::{
-    Capture, KeptStep, Logged, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_impulse,
+    Capture, KeptStep, LoggedNumbers, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_impulse,
     same_polynomial, state_difference,
 };
 use fosssim_judge::fair::formulas::BoundedPairMotion;
@@ -9,7 +9,7 @@ use fosssim_model::{
     sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Steer, Steering, Time, Zone},
     trace::PolynomialLog,
 };
-use fosssim_num::{bounded::Bounded, vector::Vec2};
+use fosssim_num::{bounded::BoundedValue, vector::Vec2};
 
 /// A contact that the reference finds.
 #[derive(Debug, Clone, Copy)]
@@ -67,7 +67,7 @@ impl StepEvents<'_> {
             return;
         }
         let expected = BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
-        let values = |form: &[Bounded]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
+        let values = |form: &[BoundedValue]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
         if let Some(other) = expected.other_form(APPROACH).map(values)
             && other != values(expected.polynomial(APPROACH))
         {
@@ -180,7 +180,7 @@ impl StepFacts {
     }
 
     /// Returns the expected and the actual state in the middle of the step.
-    pub(super) fn middles(&self) -> Option<(&Logged, &Logged)> {
+    pub(super) fn middles(&self) -> Option<(&LoggedNumbers, &LoggedNumbers)> {
         Some((self.expected.mid.as_ref()?, self.actual.mid.as_ref()?))
     }
 

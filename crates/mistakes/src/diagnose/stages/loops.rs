@@ -20,7 +20,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses)
         return None;
     }
     rounds(&wrong, max_iterations)
-        .or_else(|| of_prediction(scene, &wrong))
+        .or_else(|| explain_prediction(scene, &wrong))
         .or_else(|| handed_over(&wrong, responses))
         .or_else(|| later(scene, &wrong))
 }
@@ -76,7 +76,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
 }
 
 /// Returns the steps whose later rounds look at the integrator's positions, which the first round has left.
-fn of_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
         let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return None };
@@ -147,7 +147,7 @@ struct SecondPass {
 }
 
 impl SecondPass {
-    fn look(&mut self, scene: &Scene, facts: &StepFacts) {
+    fn compare(&mut self, scene: &Scene, facts: &StepFacts) {
         let Some(second) = facts.passes.get(1) else { return };
         let first: Vec<Pair> = facts.hits.iter().filter(|hit| hit.pass == 0).map(|hit| hit.pair).collect();
         for pair in &first {
@@ -180,7 +180,7 @@ fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     }
     let mut seen = SecondPass::default();
     wrong.iter().filter(|facts| facts.logged_passes().is_some_and(|(passes, _)| passes > 1)).for_each(|facts| {
-        seen.look(scene, facts);
+        seen.compare(scene, facts);
     });
     let fault = match seen {
         SecondPass { unresolved, contacts, .. } if unresolved > 0 => {

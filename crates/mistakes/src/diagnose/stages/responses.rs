@@ -77,7 +77,7 @@ impl Responses {
             .filter(|(_, wrong)| !wrong.is_empty())
             .collect();
         if wrong.is_empty() {
-            return of_many(facts).or_else(|| self.unresolved());
+            return explain_many(facts).or_else(|| self.unresolved());
         }
         let mut kinds: Vec<PairKind> = wrong.keys().map(|changed| changed.kind).collect();
         kinds.dedup();
@@ -146,7 +146,7 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
 }
 
 /// Returns the steps with several contacts, all of which are right though the state is not.
-fn of_many(facts: &[StepFacts]) -> Option<Explanation> {
+fn explain_many(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
         facts.is_wrong
             && facts.is_continuous()

@@ -35,9 +35,9 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     if let Some(positions) = first_positions(scene, &wrong) {
         return Some(positions);
     }
-    let mut moved = Moved::default();
+    let mut moved = ZoneMotions::default();
     for facts in facts {
-        moved.look(scene, facts);
+        moved.compare(scene, facts);
     }
     moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
 }
@@ -133,7 +133,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
             measured.velocities(scene, &facts.before, actual, &group);
         }
     }
-    let (wrong, details) = measured.told();
+    let (wrong, details) = measured.describe();
     if wrong.is_empty() {
         return observation(StageFault::AfterRounds, Vec::new(), ends.len());
     }
@@ -142,7 +142,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
 
 /// The fates of the zones of first rounds.
 #[derive(Default)]
-struct Moved {
+struct ZoneMotions {
     fates: Vec<Fate>,
     /// Velocities of zones that have to stop, over what they were.
     stopped: Vec<f64>,
@@ -154,8 +154,8 @@ struct Moved {
     measured: MotionErrors,
 }
 
-impl Moved {
-    fn look(&mut self, scene: &Scene, facts: &StepFacts) {
+impl ZoneMotions {
+    fn compare(&mut self, scene: &Scene, facts: &StepFacts) {
         let Some(first) = FirstRound::for_scene(scene, facts) else { return };
         for zone in &first.zones {
             if !first.is_seen(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
@@ -221,7 +221,7 @@ impl Moved {
         if wrong == 0 || self.bent_stops > 0 {
             return (wrong > 0).then(|| observation(StageFault::AfterRounds, Vec::new(), wrong));
         }
-        let (mut what, details) = self.measured.told();
+        let (mut what, details) = self.measured.describe();
         if self.bent_of_one + self.bent_of_many > 0 {
             what.insert(
                 what.iter().position(|one| *one != WrongMotion::Center).unwrap_or(what.len()),
@@ -287,7 +287,7 @@ impl MotionErrors {
         }
     }
 
-    fn told(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
+    fn describe(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
         let (mut wrong, mut details) = (Vec::new(), Vec::new());
         if self.has_side_shift || !is_one(&self.shifts) {
             wrong.push(WrongMotion::Center);

@@ -1,6 +1,6 @@
 //! The features of wrong steps where traces log states: contacts at the end of a step, then velocities, then
 //! positions. An observation of these says where to look, and guesses nothing.
-use super::{Explanation, common_value, contacts::of_overlaps, observation};
+use super::{Explanation, common_value, contacts::explain_overlaps, observation};
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,
     sampling::{Capture, KeptStep, Reference},
@@ -33,7 +33,7 @@ pub(super) fn explain<'a>(
         contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));
         entries.extend(wrong_entries(scene, kept, &capture));
     }
-    of_overlaps(&contacts).or_else(|| of_changes(scene, &entries, count))
+    explain_overlaps(&contacts).or_else(|| explain_changes(scene, &entries, count))
 }
 
 /// Returns the velocities that are wrong, and the positions that do not follow from the velocities as they are.
@@ -62,7 +62,7 @@ fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<Wrong
     entries
 }
 
-fn of_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Option<Explanation> {
+fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Option<Explanation> {
     let has = |quantity: Quantity| entries.iter().any(|entry| entry.quantity == quantity);
     let quantity = match (has(Quantity::Position), has(Quantity::Velocity)) {
         (true, false) => Quantity::Position,

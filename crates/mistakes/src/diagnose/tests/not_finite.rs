@@ -1,7 +1,7 @@
 //! Where numbers end is told with its step and stage, and what is no number accuses of nothing.
 use crate::{
     assignments::probe_scenes,
-    diagnose::{About, Explanation, NanStage, NotFinite, explain, not_finite::of_source, sampling::Source},
+    diagnose::{About, Explanation, NanStage, NotFinite, explain, not_finite::find_in_trace, sampling::Source},
     student::{self, Student},
 };
 use fosssim_model::{
@@ -44,7 +44,7 @@ fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NotFinite {
     let all = explain(scene, &trace);
     // Nothing but that: the steps before are right, and what follows from NaN speaks for nothing.
     let [Explanation { about: About::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
-    assert_eq!(of_source(scene, Source::whole(&trace))[0].about, all[0].about);
+    assert_eq!(find_in_trace(scene, Source::whole(&trace))[0].about, all[0].about);
     *found
 }
 

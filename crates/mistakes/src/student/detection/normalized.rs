@@ -14,7 +14,7 @@ pub fn normalize(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]
     let size: fn(&Encounter, &[f64]) -> f64 = match student.mistake_in(HERE) {
         Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
         Some(Mistake::NormalizedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
-        Some(Mistake::NormalizedPerPair) => |encounter, _| of_pair(encounter),
+        Some(Mistake::NormalizedPerPair) => |encounter, _| length_for_pair(encounter),
         _ => return,
     };
     for list in lists {
@@ -27,7 +27,7 @@ pub fn normalize(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]
 
 /// Returns a number that makes quotients of one pair's formulas handy: the square of the relative motion, along the
 /// normal where there is one; for edges that of the length.
-fn of_pair(encounter: &Encounter) -> f64 {
+fn length_for_pair(encounter: &Encounter) -> f64 {
     let square = |v: Vec2| v.dot(&v);
     match encounter {
         Encounter::Particles(one, two) => square(two.displacement - one.displacement),

@@ -5,7 +5,7 @@ use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
     basis, factorized, quintic,
-    wide::Wide,
+    wide::WideNumber,
 };
 use crate::student::{
     Area, Mistake,
@@ -24,7 +24,7 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
         Some(Mistake::ParticleEdgeZero) => {
             return vec![vec![0.0; 5], vec![0.0; 3], vec![0.0; 3], quintic::approach(student, bodies)];
         }
-        Some(Mistake::ExtendedPrecision) => return arithmetic::particle_edge::<Wide>(bodies, edge_radius),
+        Some(Mistake::ExtendedPrecision) => return arithmetic::particle_edge::<WideNumber>(bodies, edge_radius),
         Some(Mistake::FusedArithmetic) => return arithmetic::particle_edge::<FusedDouble>(bodies, edge_radius),
         Some(Mistake::InterpolatedAll) => {
             let reach = bodies[0].radius + edge_radius;
@@ -38,7 +38,7 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     let square = reach_squared(student, bodies[0].radius, edge_radius);
     let dots = dot_products(bodies);
     let overlap = match mistake {
-        Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<Wide>(bodies, edge_radius).swap_remove(0),
+        Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<WideNumber>(bodies, edge_radius).swap_remove(0),
         Some(Mistake::FactorizedQuartic | Mistake::FactorizedAll) => factorized::quartic(bodies, square),
         Some(Mistake::InterpolatedQuartic) => interpolated(bodies, square),
         Some(Mistake::RearrangedParticleEdge) => rearranged(dots, square),
@@ -252,7 +252,7 @@ pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec
         Some(Mistake::ParticleEdgeContactEdgeStill) => {
             two.start + alpha * (three.start - two.start) - one.start - t * one.displacement
         }
-        Some(Mistake::ExtendedPrecision) => arithmetic::to_edge::<Wide>(bodies, t),
+        Some(Mistake::ExtendedPrecision) => arithmetic::to_edge::<WideNumber>(bodies, t),
         Some(Mistake::FusedArithmetic) => arithmetic::to_edge::<FusedDouble>(bodies, t),
         Some(Mistake::ContactOtherFormula) => {
             let across = Vec2::new(-along.y, along.x);

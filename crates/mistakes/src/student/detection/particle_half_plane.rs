@@ -5,7 +5,7 @@ use super::{
     MovingBody, VECTORS,
     arithmetic::{self, FusedDouble},
     basis,
-    wide::Wide,
+    wide::WideNumber,
 };
 use crate::student::{Area, Mistake, author::Student};
 
@@ -23,7 +23,7 @@ pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2
     let w = match mistake {
         Some(Mistake::HalfPlaneEmpty) => return Vec::new(),
         Some(Mistake::HalfPlaneZero) => return vec![vec![0.0; 3], vec![0.0; 2]],
-        Some(Mistake::ExtendedPrecision) => return arithmetic::particle_half_plane::<Wide>(one, point, normal),
+        Some(Mistake::ExtendedPrecision) => return arithmetic::particle_half_plane::<WideNumber>(one, point, normal),
         Some(Mistake::FusedArithmetic) => return arithmetic::particle_half_plane::<FusedDouble>(one, point, normal),
         Some(Mistake::InterpolatedAll) => return basis::particle_half_plane(one, point, normal),
         Some(Mistake::HalfPlaneNoPoint) => (-one.start).dot(&q),
@@ -32,7 +32,9 @@ pub fn polynomials(student: Student, one: &MovingBody, point: Vec2, normal: Vec2
         _ => (point - one.start).dot(&q),
     };
     let overlap = match mistake {
-        Some(Mistake::WideArithmetic) => arithmetic::particle_half_plane::<Wide>(one, point, normal).swap_remove(0),
+        Some(Mistake::WideArithmetic) => {
+            arithmetic::particle_half_plane::<WideNumber>(one, point, normal).swap_remove(0)
+        }
         Some(Mistake::RearrangedHalfPlane) => rearranged_overlap(one, s, w, q),
         Some(Mistake::HalfPlaneOverlapSigned) => vec![-s, one.radius * q.dot(&q).sqrt() + w],
         _ => overlap(student, one.radius, s, w, q),
@@ -112,7 +114,7 @@ pub fn contact_vector(student: Student, one: &MovingBody, point: Vec2, normal: V
             let u = unit(normal);
             (point - one.at(t)).dot(&u) * u
         }
-        Some(Mistake::ExtendedPrecision) => arithmetic::to_half_plane::<Wide>(one, point, normal, t),
+        Some(Mistake::ExtendedPrecision) => arithmetic::to_half_plane::<WideNumber>(one, point, normal, t),
         Some(Mistake::FusedArithmetic) => arithmetic::to_half_plane::<FusedDouble>(one, point, normal, t),
         _ => offset.dot(&normal) / square * normal,
     }

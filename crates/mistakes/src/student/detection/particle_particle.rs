@@ -5,7 +5,7 @@ use super::{
     MovingBody, VECTORS,
     arithmetic::{self, FusedDouble},
     basis,
-    wide::Wide,
+    wide::WideNumber,
 };
 use crate::student::{Area, Mistake, author::Student};
 
@@ -18,7 +18,7 @@ pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<
     match mistake {
         Some(Mistake::ParticleParticleEmpty) => return Vec::new(),
         Some(Mistake::ParticleParticleZero) => return vec![vec![0.0; 3], vec![0.0; 2]],
-        Some(Mistake::ExtendedPrecision) => return arithmetic::particle_particle::<Wide>(one, two),
+        Some(Mistake::ExtendedPrecision) => return arithmetic::particle_particle::<WideNumber>(one, two),
         Some(Mistake::FusedArithmetic) => return arithmetic::particle_particle::<FusedDouble>(one, two),
         Some(Mistake::InterpolatedAll) => return basis::particle_particle(one, two),
         _ => {}
@@ -43,7 +43,7 @@ pub fn polynomials(student: Student, one: &MovingBody, two: &MovingBody) -> Vec<
         _ => one.displacement - two.displacement,
     };
     let overlap = match mistake {
-        Some(Mistake::WideArithmetic) => arithmetic::particle_particle::<Wide>(one, two).swap_remove(0),
+        Some(Mistake::WideArithmetic) => arithmetic::particle_particle::<WideNumber>(one, two).swap_remove(0),
         Some(Mistake::RearrangedParticleParticle) => rearranged_overlap(one, two),
         _ => overlap(student, x, d, one.radius, two.radius),
     };
@@ -123,7 +123,7 @@ pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f
         Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.at(t),
         Some(Mistake::ParticleParticleContactFirstAtEnd) => two.at(t) - one.end(),
         Some(Mistake::ParticleParticleContactSecondAtEnd) => two.end() - one.at(t),
-        Some(Mistake::ExtendedPrecision) => arithmetic::between_particles::<Wide>(one, two, t),
+        Some(Mistake::ExtendedPrecision) => arithmetic::between_particles::<WideNumber>(one, two, t),
         Some(Mistake::FusedArithmetic) => arithmetic::between_particles::<FusedDouble>(one, two, t),
         Some(Mistake::ContactOtherFormula) => (two.start - one.start) + t * (two.displacement - one.displacement),
         _ => two.at(t) - one.at(t),

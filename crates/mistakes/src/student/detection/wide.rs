@@ -8,28 +8,28 @@ use super::arithmetic::Number;
 
 /// An unevaluated sum of two doubles.
 #[derive(Clone, Copy)]
-pub struct Wide {
+pub struct WideNumber {
     high: f64,
     low: f64,
 }
 
-impl From<f64> for Wide {
+impl From<f64> for WideNumber {
     fn from(value: f64) -> Self {
         Self { high: value, low: 0.0 }
     }
 }
 
 /// Returns `a + b` exactly.
-fn two_sum(a: f64, b: f64) -> Wide {
+fn two_sum(a: f64, b: f64) -> WideNumber {
     let high = a + b;
     let part = high - a;
-    Wide { high, low: (a - (high - part)) + (b - part) }
+    WideNumber { high, low: (a - (high - part)) + (b - part) }
 }
 
 /// Returns `a + b` exactly, `a` being the larger in size.
-fn quick_two_sum(a: f64, b: f64) -> Wide {
+fn quick_two_sum(a: f64, b: f64) -> WideNumber {
     let high = a + b;
-    Wide { high, low: b - (high - a) }
+    WideNumber { high, low: b - (high - a) }
 }
 
 /// Splits a double into two of half the length.
@@ -40,13 +40,13 @@ fn split(a: f64) -> (f64, f64) {
 }
 
 /// Returns `a * b` exactly.
-fn two_product(a: f64, b: f64) -> Wide {
+fn two_product(a: f64, b: f64) -> WideNumber {
     let high = a * b;
     let ((a1, a2), (b1, b2)) = (split(a), split(b));
-    Wide { high, low: ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2 }
+    WideNumber { high, low: ((a1 * b1 - high) + a1 * b2 + a2 * b1) + a2 * b2 }
 }
 
-impl Add for Wide {
+impl Add for WideNumber {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
@@ -55,7 +55,7 @@ impl Add for Wide {
     }
 }
 
-impl Sub for Wide {
+impl Sub for WideNumber {
     type Output = Self;
 
     fn sub(self, other: Self) -> Self {
@@ -63,7 +63,7 @@ impl Sub for Wide {
     }
 }
 
-impl Mul for Wide {
+impl Mul for WideNumber {
     type Output = Self;
 
     fn mul(self, other: Self) -> Self {
@@ -72,7 +72,7 @@ impl Mul for Wide {
     }
 }
 
-impl Div for Wide {
+impl Div for WideNumber {
     type Output = Self;
 
     fn div(self, other: Self) -> Self {
@@ -82,7 +82,7 @@ impl Div for Wide {
     }
 }
 
-impl Number for Wide {
+impl Number for WideNumber {
     fn multiply_add(self, factor: Self, addend: Self) -> Self {
         self * factor + addend
     }

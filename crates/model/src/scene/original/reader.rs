@@ -26,7 +26,7 @@ pub fn read(bytes: &[u8]) -> Result<OriginalScene, Refusal> {
     let tag = singles.tag()?;
     check_type(singles.simulation_type())?;
 
-    let mut repeated = Repeated { elements: &elements, undefined: None };
+    let mut repeated = RepeatedElements { elements: &elements, undefined: None };
     let particles = repeated.particles()?;
     let edges = repeated.edges(particles.len())?;
     let half_planes = repeated.half_planes()?;
@@ -81,12 +81,12 @@ fn check_type(written: &[u8]) -> Result<(), Refusal> {
 }
 
 /// The repeated elements, and the first thing among them that the original reads garbage for.
-struct Repeated<'e> {
+struct RepeatedElements<'e> {
     elements: &'e [Element<'e>],
     undefined: Option<String>,
 }
 
-impl<'e> Repeated<'e> {
+impl<'e> RepeatedElements<'e> {
     fn all(&self, name: &'static str) -> impl Iterator<Item = Item<'e>> + use<'e> {
         Item::all(self.elements, name, name)
     }
@@ -189,7 +189,7 @@ impl<'e> Repeated<'e> {
 /// The attributes of a force.
 struct ForceItem<'e, 's> {
     item: Item<'e>,
-    scene: &'s mut Repeated<'e>,
+    scene: &'s mut RepeatedElements<'e>,
     particles: usize,
     edges: usize,
 }

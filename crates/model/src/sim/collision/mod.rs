@@ -32,7 +32,7 @@ pub mod formulas {
 
 use super::{
     bodies::Bodies,
-    nearby::Nearby,
+    nearby::NearbyPairs,
     observer::Observer,
     search::{RootSearch, SearchCounts},
     state::State,
@@ -51,7 +51,7 @@ pub(super) struct Handler {
     law: Law,
     detector: Detector,
     /// The search of `simple`, which logs nothing of pairs that are apart.
-    nearby: Option<Nearby>,
+    nearby: Option<NearbyPairs>,
     hybrid: HybridScratch,
 }
 
@@ -69,7 +69,7 @@ impl Handler {
             kind: scene.collision,
             law: Law::new(restitution, scene.time_step),
             detector: Detector::new(search, scene.steps()),
-            nearby: is_simple.then(|| Nearby::of_many(scene, 0.0)).flatten(),
+            nearby: is_simple.then(|| NearbyPairs::for_many(scene, 0.0)).flatten(),
             hybrid: HybridScratch::default(),
         }
     }

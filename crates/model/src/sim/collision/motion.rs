@@ -111,7 +111,7 @@ impl PairMotion {
 
     /// Returns the motion of a pair whose particles move by these displacements.
     #[inline]
-    pub(super) fn of_bodies(bodies: &Bodies, pair: Pair, q_start: &[f64], displacements: &[f64]) -> Self {
+    pub(super) fn from_bodies(bodies: &Bodies, pair: Pair, q_start: &[f64], displacements: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let point = |index| PointMotion { start: at(q_start, index), shift: at(displacements, index) };
         let radius = bodies.radii[first];

@@ -6,7 +6,7 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Decision, Detection, Impulse, Observer, Pass, Time, Wanted},
+        observer::{Decision, Detection, Impulse, Observer, Pass, Time, WantedPairs},
         pair::{Pair, PairKind, pair},
         pairs::{PassCursor, is_end},
         search::{RootSearch, SUBNORMAL_WORK, SearchCounts, have_subnormal_products},
@@ -112,7 +112,7 @@ impl Detector {
         let begin = self.counts.work();
         let is_slow = have_subnormal_products(q_start) || have_subnormal_products(&self.displacements);
         let (mut place, mut hits) = (PassCursor::at(0), 0);
-        if self.has_lanes && !matches!(observer.wanted(), Wanted::Calls) {
+        if self.has_lanes && !matches!(observer.wanted(), WantedPairs::Calls) {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
         let mut context = PassContext { pass, bodies, q_start, q_end, observer, react, hits };
@@ -121,7 +121,7 @@ impl Detector {
             for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.objects().row(place)) {
                 for second in seconds {
                     if kind != PairKind::ParticleEdge || !is_end(bodies.edges[second], first) {
-                        self.look(pair(kind, first, second), &mut context)?;
+                        self.detect(pair(kind, first, second), &mut context)?;
                     }
                 }
             }
@@ -153,8 +153,8 @@ impl Detector {
         while is_on {
             let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
             let bytes = match observer.wanted() {
-                Wanted::Bytes(bytes) => Some(bytes),
-                Wanted::Calls | Wanted::Nothing => None,
+                WantedPairs::Bytes(bytes) => Some(bytes),
+                WantedPairs::Calls | WantedPairs::Nothing => None,
             };
             let Some(impulse) = self.blocks.next_hit(setting, place, &mut self.counts, bytes)? else { break };
             hits += 1;
@@ -170,11 +170,11 @@ impl Detector {
 
     /// Computes a pair's polynomials, decides about it, tells the observer and has a hit answered.
     #[inline]
-    fn look<O: Observer, R>(&mut self, pair: Pair, context: &mut PassContext<'_, O, R>) -> Result<(), StepError>
+    fn detect<O: Observer, R>(&mut self, pair: Pair, context: &mut PassContext<'_, O, R>) -> Result<(), StepError>
     where
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
-        let motion = PairMotion::of_bodies(context.bodies, pair, context.q_start, &self.displacements);
+        let motion = PairMotion::from_bodies(context.bodies, pair, context.q_start, &self.displacements);
         let mut polynomials = motion.list();
         let polynomials = &mut polynomials[..pair.kind.polynomials()];
         polynomials.iter_mut().for_each(Polynomial::trim);
@@ -191,16 +191,16 @@ impl Detector {
         };
         let PassContext { pass, bodies, q_start, ref q_end, ref mut observer, .. } = *context;
         let decision = match observer.wanted() {
-            Wanted::Calls => {
+            WantedPairs::Calls => {
                 let decision = observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
                 observer.detection(&Detection { pass, pair, polynomials, decision, q_start, q_end, velocities: &[] });
                 decision
             }
-            Wanted::Bytes(bytes) => {
+            WantedPairs::Bytes(bytes) => {
                 polynomials.iter().for_each(|polynomial| bytes.push(polynomial.coefficients()));
                 decision
             }
-            Wanted::Nothing => decision,
+            WantedPairs::Nothing => decision,
         };
         let Decision::Hit { time, normal } = decision else { return Ok(()) };
         context.hits += 1;

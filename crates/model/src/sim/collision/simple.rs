@@ -5,8 +5,8 @@
 use super::{
     super::{
         bodies::Bodies,
-        nearby::Nearby,
-        observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time, Wanted},
+        nearby::NearbyPairs,
+        observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time, WantedPairs},
         pair::{PairKind, pair},
         pairs::{PassCursor, is_end},
         state::State,
@@ -20,7 +20,7 @@ use fosssim_num::vector::Vec2;
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,
     law: &Law,
-    nearby: Option<&mut Nearby>,
+    nearby: Option<&mut NearbyPairs>,
     q_start: &[f64],
     state: &mut State,
     observer: &mut O,
@@ -29,10 +29,10 @@ pub(super) fn handle<O: Observer>(
     let State { positions: x, velocities: v } = state;
     observer.begin_pass(pass);
     let mut found = match observer.wanted() {
-        Wanted::Calls => None,
-        Wanted::Bytes(_) | Wanted::Nothing => nearby.and_then(|nearby| nearby.find(x)),
+        WantedPairs::Calls => None,
+        WantedPairs::Bytes(_) | WantedPairs::Nothing => nearby.and_then(|nearby| nearby.find(x)),
     };
-    let mut looking = Looking { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
+    let mut looking = RunningPass { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
     for i in 0..bodies.particles() {
         let [particles, edges, half_planes] = bodies.objects().row(PassCursor::at(i));
         if let Some(found) = &mut found {
@@ -50,7 +50,7 @@ pub(super) fn handle<O: Observer>(
 }
 
 /// A pass at work.
-struct Looking<'a, O> {
+struct RunningPass<'a, O> {
     pass: Pass,
     bodies: &'a Bodies,
     factor: f64,
@@ -61,7 +61,7 @@ struct Looking<'a, O> {
     hits: usize,
 }
 
-impl<O: Observer> Looking<'_, O> {
+impl<O: Observer> RunningPass<'_, O> {
     fn at_particles(&mut self, i: usize, j: usize) {
         let normal = particle_particle::overlap(self.bodies, self.x, self.v, i, j);
         self.settle(PairKind::ParticleParticle, i, j, normal, |looking, n| {

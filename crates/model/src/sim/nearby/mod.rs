@@ -25,7 +25,7 @@ const FEWEST_PAIRS: usize = 1 << 10;
 ///
 /// Radii and edges are those of the scene; memory grows with the number of particles and edges.
 #[derive(Debug, Clone)]
-pub(super) struct Nearby {
+pub(super) struct NearbyPairs {
     radii: Vec<f64>,
     /// By falling size.
     sizes: Vec<Strips>,
@@ -67,9 +67,9 @@ impl<'a> NearRows<'a> {
     }
 }
 
-impl Nearby {
+impl NearbyPairs {
     /// Creates the search for the particles and edges of a scene, when it is cheaper than going through all of them.
-    pub fn of_many(scene: &Scene, margin: f64) -> Option<Self> {
+    pub fn for_many(scene: &Scene, margin: f64) -> Option<Self> {
         let particles = scene.particles.len();
         (particles * (particles / 2 + scene.edges.len()) >= FEWEST_PAIRS).then(|| Self::new(scene, margin))
     }

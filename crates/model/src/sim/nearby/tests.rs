@@ -86,7 +86,7 @@ fn every_pair_that_is_near_is_found_in_the_order_of_its_detection() {
     let mut near_pairs = 0;
     for seed in 0..600 {
         let (mut scene, margin) = crowd(seed);
-        let mut nearby = Nearby::new(&scene, margin);
+        let mut nearby = NearbyPairs::new(&scene, margin);
         let mut numbers = Numbers(seed);
         for _ in 0..3 {
             let x = positions(&scene);
@@ -136,7 +136,7 @@ fn box_of(balls: u32) -> Scene {
 fn the_work_grows_with_the_number_of_balls() {
     let per_ball = |balls: u32| {
         let scene = box_of(balls);
-        let mut nearby = Nearby::new(&scene, 0.0);
+        let mut nearby = NearbyPairs::new(&scene, 0.0);
         nearby.find(&positions(&scene)).expect("few are near");
         nearby.tested() / u64::from(balls)
     };
@@ -149,15 +149,15 @@ fn the_work_grows_with_the_number_of_balls() {
 fn a_long_edge_looks_at_what_lies_along_it() {
     let mut scene = box_of(20_000);
     scene.edges = vec![edge(1, 3, 0.01)];
-    let mut nearby = Nearby::new(&scene, 0.0);
-    let along = |scene: &Scene, nearby: &mut Nearby| {
+    let mut nearby = NearbyPairs::new(&scene, 0.0);
+    let along = |scene: &Scene, nearby: &mut NearbyPairs| {
         let before = nearby.tested();
         nearby.find(&positions(scene)).expect("few are near");
         nearby.tested() - before
     };
     let with = along(&scene, &mut nearby);
     scene.edges.clear();
-    let without = along(&scene, &mut Nearby::new(&scene, 0.0));
+    let without = along(&scene, &mut NearbyPairs::new(&scene, 0.0));
     assert!(with - without < 5_000, "{} of 20,004 balls", with - without);
 }
 
@@ -165,7 +165,7 @@ fn a_long_edge_looks_at_what_lies_along_it() {
 fn what_is_near_everything_is_not_listed() {
     let balls = 3000_usize;
     let scene = scene((0..balls).map(|_| particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.5)).collect());
-    let mut nearby = Nearby::new(&scene, 0.0);
+    let mut nearby = NearbyPairs::new(&scene, 0.0);
     assert!(nearby.find(&positions(&scene)).is_none());
     assert!(nearby.tested() < 1_000_000, "the search ends early: {}", nearby.tested());
     let mut visited = 0;

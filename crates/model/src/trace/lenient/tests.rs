@@ -72,7 +72,7 @@ fn record(polynomials: &[&[f64]]) -> Vec<u8> {
 
 /// Reads one record, and gives the frame and what reading another one stops at.
 fn read(bytes: &[u8]) -> (LenientFrame, ReadStop) {
-    let mut reader = Lenient::of_slice(bytes, LAYOUT);
+    let mut reader = Lenient::from_slice(bytes, LAYOUT);
     let mut frame = LenientFrame::default();
     reader.next(&mut frame).unwrap();
     let stop = reader.next(&mut LenientFrame::default()).unwrap_err();
@@ -119,7 +119,7 @@ fn polynomials_behind_a_cut_are_empty() {
 fn small_leading_coefficients_are_dropped_and_nan_stops_the_dropping() {
     let bytes = record(&[&[1e-13, -1e-13, 2.0, 0.0], &[0.0, 0.0], &[0.0, f64::NAN, 1.0], &[1e-12]]);
     let mut frame = LenientFrame::default();
-    Lenient::of_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
+    Lenient::from_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
     let log = &frame.polynomials;
     assert_eq!((log.get(0), log.get(1), log.get(3)), (&[2.0, 0.0][..], &[][..], &[1e-12][..]));
     assert!(log.get(2)[0].is_nan() && log.get(2)[1] == 1.0);
@@ -130,7 +130,7 @@ fn small_leading_coefficients_are_dropped_and_nan_stops_the_dropping() {
 fn a_sound_list_is_plain() {
     let bytes = record(&[&[1.0, 0.0], &[], &[f64::NAN; 6], &[2.0; 9]]);
     let mut frame = LenientFrame::default();
-    Lenient::of_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
+    Lenient::from_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
     assert!(frame.plain);
     assert_eq!(frame.polynomials.get(3), [2.0; 9]);
 }
@@ -157,7 +157,7 @@ fn nonsense_counts_cost_no_memory() {
         (vec![count(0), count(1), count(i32::MAX)], Unreadable::Memory),
     ];
     for (words, cause) in cases {
-        let stop = Lenient::of_slice(&words.concat(), LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
+        let stop = Lenient::from_slice(&words.concat(), LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
         assert_eq!(stop.cause, cause);
     }
     let (frame, _) = read(&[count(0), count(1_000_000)].concat());

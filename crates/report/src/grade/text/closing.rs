@@ -1,5 +1,5 @@
 //! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
-use super::{Text, look};
+use super::{Text, verdict_look};
 use crate::foreign::{one_line, plain};
 use crate::{
     grade::{change_lines, likely_mistakes, points, reached, speed_words, wrong_scenes},
@@ -52,7 +52,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     }
     let first = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun));
     if let Some(scene) = first {
-        let code = style.paint(look(scene.verdict), scene.verdict.code());
+        let code = style.paint(verdict_look(scene.verdict), scene.verdict.code());
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "First scene that is not accepted"));
         let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summary(scene)));
         for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
@@ -77,7 +77,7 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
         table.row([
             name.into(),
             score.into(),
-            Cell::looking(look(group.verdict), group.verdict.code()),
+            Cell::looking(verdict_look(group.verdict), group.verdict.code()),
             share(group).into(),
         ]);
     }

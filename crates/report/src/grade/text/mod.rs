@@ -92,7 +92,7 @@ impl Text<'_> {
     /// Returns the submission, its verdict and its points.
     fn verdict(&self, grade: &Grade) -> String {
         let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
-        let (name, verdict) = (one_line(&grade.submission), grade.verdict.words());
+        let (name, verdict) = (one_line(&grade.submission), grade.verdict.text());
         let reached = match grade.points {
             Some(reached) => score(reached, grade.max_points) + &extra(grade),
             None => no_points(grade).unwrap_or_default(),
@@ -148,7 +148,7 @@ fn rules(grade: &Grade) -> String {
 }
 
 /// Returns the look of a scene's verdict.
-const fn look(verdict: Verdict) -> Look {
+const fn verdict_look(verdict: Verdict) -> Look {
     match verdict {
         Verdict::Accepted => Look::Good,
         Verdict::NotRun => Look::Notice,

@@ -1,6 +1,6 @@
 //! The scenes of a submission, group by group. Accepted scenes are counted. Scenes that fail for the same cause are
 //! described once.
-use super::{super::phrases::some, Text, TextDetail, look, output};
+use super::{super::phrases::some, Text, TextDetail, output, verdict_look};
 use crate::foreign::one_line;
 use crate::{
     explain,
@@ -80,7 +80,7 @@ impl<'a> Scenes<'a, '_> {
             *folded.entry(scene.verdict).or_default() += 1;
         }
         let row = |verdict: Verdict, count: u64, above: &str| {
-            let code = style.paint(look(verdict), &format!("{:<3}", verdict.code()));
+            let code = style.paint(verdict_look(verdict), &format!("{:<3}", verdict.code()));
             format!("  {code} {}{above}\n", counted(count, "scene"))
         };
         if let Some(accepted) = folded.remove(&Verdict::Accepted) {
@@ -107,7 +107,7 @@ impl<'a> Scenes<'a, '_> {
 
     fn row(&self, scene: &SceneGrade) -> String {
         let (name, style) = (one_line(&scene.scene), self.options.style);
-        let code = style.paint(look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
+        let code = style.paint(verdict_look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
         let blanks = " ".repeat(self.width.saturating_sub(columns(&name)));
         format!("  {code} {name}{blanks}  {} of {}\n", reached(scene.points), points(scene.max_points))
     }

@@ -23,7 +23,7 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     };
     let name = of("submission", false, &|grade| shortened(&one_line(&grade.submission)));
     let score = of("points", true, &|grade| reached(grade.points));
-    let verdict = of("verdict", false, &|grade| grade.verdict.words().to_owned());
+    let verdict = of("verdict", false, &|grade| grade.verdict.text().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
     let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
         of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
@@ -102,7 +102,7 @@ fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
             let look = match row.checked_sub(1) {
                 None => Some(Look::Faint),
                 // The verdict.
-                Some(grade) if number == 2 => Some(super::look(grades[grade].verdict)),
+                Some(grade) if number == 2 => Some(super::verdict_look(grades[grade].verdict)),
                 Some(_) => None,
             };
             let cell = look.map_or_else(|| cell.clone(), |look| style.paint(look, cell));

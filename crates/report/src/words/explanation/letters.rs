@@ -4,17 +4,17 @@ use fosssim_model::sim::PairKind;
 /// Returns the sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion,
 /// that occur in these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation
 /// where zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
-pub(super) fn of(lines: &[String], kinds: &[PairKind]) -> Option<String> {
+pub(super) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
     let is_edge = all(PairKind::ParticleEdge)
         || lines.iter().any(|line| difference(line, |number| number == '3').is_some() || line.contains("re^2"));
     let has_turn = lines.iter().any(|line| line.contains("x_cm"));
-    let reach = !has_turn && lines.iter().any(|line| words(line).any(|word| word == "R"));
+    let reach = !has_turn && lines.iter().any(|line| split_words(line).any(|word| word == "R"));
     let mut parts = Vec::new();
     if has_turn {
         parts.push("x_cm is the center of mass at the start of the step, dx_cm its displacement".to_owned());
-        if lines.iter().any(|line| words(line).any(|word| word == "R")) {
+        if lines.iter().any(|line| split_words(line).any(|word| word == "R")) {
             parts.push("R turns a vector by the zone's angle".to_owned());
         }
     }
@@ -55,13 +55,13 @@ pub(super) fn radii(line: &str, of_edges: bool) -> String {
 }
 
 /// Returns the words of a line: what is no letter and no digit parts them.
-fn words(line: &str) -> impl Iterator<Item = &str> {
+fn split_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|letter: char| !letter.is_alphanumeric())
 }
 
 /// Returns the first name such as `x21` or `d32` in a line with such a number: its letter and its two numbers.
 fn difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
-    words(line).find_map(|word| {
+    split_words(line).find_map(|word| {
         let mut letters = word.chars();
         let name = (letters.next()?, letters.next()?, letters.next()?);
         let (kind, one, two) = name;
@@ -75,8 +75,8 @@ fn difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, cha
 mod tests {
     use super::*;
 
-    fn told(line: &str) -> Option<String> {
-        of(&[line.to_owned()], &[])
+    fn explain_line(line: &str) -> Option<String> {
+        explain_letters(&[line.to_owned()], &[])
     }
 
     #[test]
@@ -84,7 +84,7 @@ mod tests {
         let line = "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
         let of_kinds = |kinds: &[PairKind]| {
             let line = radii(line, kinds == [PairKind::ParticleEdge]);
-            let told = of(std::slice::from_ref(&line), kinds).expect("it has short names");
+            let told = explain_letters(std::slice::from_ref(&line), kinds).expect("it has short names");
             (line, told)
         };
         let (edge, told) = of_kinds(&[PairKind::ParticleEdge]);
@@ -99,30 +99,32 @@ mod tests {
 
     #[test]
     fn short_names_are_explained() {
-        let text = told("t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.").expect("it has short names");
+        let text = explain_line("t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.").expect("it has short names");
         assert!(text.starts_with("Here d21 is dx2 - dx1, and so on;") && text.contains("edge's ends"), "{text}");
-        let text = told("t: -x21.d21 is used instead of -2 x21.d21.").expect("it has short names");
+        let text = explain_line("t: -x21.d21 is used instead of -2 x21.d21.").expect("it has short names");
         assert!(text.starts_with("Here x21 is x2 - x1,") && text.contains("first particle"), "{text}");
-        let text = told("t^2: R^2 i has weight 2, expected 1 (i = d32.d32)").expect("it has short names");
+        let text = explain_line("t^2: R^2 i has weight 2, expected 1 (i = d32.d32)").expect("it has short names");
         assert!(text.contains("R is r1 + re") && text.contains("edge's ends"), "{text}");
-        let text = told("t^1: R^2 has weight 1, expected 0; multiplied by 0.3").expect("it has short names");
+        let text = explain_line("t^1: R^2 has weight 1, expected 0; multiplied by 0.3").expect("it has short names");
         assert_eq!(text, "Here R is r1 + r2.");
     }
 
     #[test]
     fn the_letter_r_is_the_rotation_where_zones_move() {
-        let text = told("dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).").expect("it has short names");
+        let text = explain_line("dx_cm is missing in x_cm + dx_cm + R (xs - x_cm).").expect("it has short names");
         assert!(text.contains("R turns a vector by the zone's angle") && !text.contains("r1"), "{text}");
-        let text = told("sum(xs) / N is used instead of x_cm.").expect("it has short names");
+        let text = explain_line("sum(xs) / N is used instead of x_cm.").expect("it has short names");
         assert!(!text.contains("R "), "{text}");
         let failsafe = fosssim_mistakes::student::CATALOGUE.iter().filter(|row| row.id.starts_with("failsafe-"));
-        let false_ones: Vec<&str> =
-            failsafe.filter(|row| told(row.term).is_some_and(|text| text.contains("r1"))).map(|row| row.id).collect();
+        let false_ones: Vec<&str> = failsafe
+            .filter(|row| explain_line(row.term).is_some_and(|text| text.contains("r1")))
+            .map(|row| row.id)
+            .collect();
         assert!(false_ones.is_empty(), "{false_ones:?}");
     }
 
     #[test]
     fn nothing_is_explained_where_nothing_needs_it() {
-        assert_eq!(told("dx2 is used instead of dx3."), None);
+        assert_eq!(explain_line("dx2 is used instead of dx3."), None);
     }
 }

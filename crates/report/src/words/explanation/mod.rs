@@ -65,8 +65,8 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
             Detail::Look(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
-            Detail::Look(area) => Some(look(*area).to_owned()),
-            Detail::Letters(kinds) => letters::of(&lines, kinds),
+            Detail::Look(area) => Some(advice(*area).to_owned()),
+            Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
             Detail::Stage(detail) => stages::detail(detail),
         };
@@ -88,7 +88,7 @@ pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
 /// Returns where in the program to look for what is wrong with a stage of a step.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
-        About::Stage(fault) => fault.areas().first().map(|area| look(*area)),
+        About::Stage(fault) => fault.areas().first().map(|area| advice(*area)),
         _ => None,
     }
 }
@@ -143,13 +143,13 @@ fn look_at_step(key: &str) -> &'static str {
         () if key.starts_with("linear") => {
             "Look at where forces and matrix are computed, and at what the solution of the system changes."
         }
-        () if has(&["-velocity", "behind"]) => look(Area::Integrator),
+        () if has(&["-velocity", "behind"]) => advice(Area::Integrator),
         () => "Look at how forces change velocities, and velocities change positions.",
     }
 }
 
 /// Returns one sentence that says where in the program the mistake is made, without the right formula.
-const fn look(area: Area) -> &'static str {
+const fn advice(area: Area) -> &'static str {
     match area {
         Area::Forces => "Look at what each force adds to the gradient, for each of its particles.",
         Area::Jacobians => "Look at what each force adds to the second derivatives, block by block.",

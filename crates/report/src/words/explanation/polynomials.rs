@@ -13,7 +13,7 @@ pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names = names.join(", ");
     let place = capitalized(&names);
     match found {
-        OfPolynomials::Guess(guess) => format!("{place}: {}.", of_guess(guess)),
+        OfPolynomials::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
         OfPolynomials::Missing => format!("Polynomials are not handed over: {names}."),
         OfPolynomials::NearlyRight => {
             format!("{place}: The formula is right, but for more round-off than the rules allow.")
@@ -25,20 +25,20 @@ pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
     }
 }
 
-fn of_guess(guess: &Guess) -> String {
+fn describe_guess(guess: &Guess) -> String {
     match guess {
-        Guess::List(guess) => of_list(*guess).to_owned(),
+        Guess::List(guess) => describe_list(*guess).to_owned(),
         Guess::Exchange(key) => find_exchange(key).map_or(key.as_ref(), |exchange| exchange.sentence).to_owned(),
         Guess::Special(key) => find_special(key).map_or(key.as_ref(), |special| special.sentence).to_owned(),
-        Guess::Quantity(guess) => of_quantity(*guess).to_owned(),
+        Guess::Quantity(guess) => describe_quantity(*guess).to_owned(),
         Guess::Coefficients { powers, wrong } => {
             let names: Vec<&str> = powers.iter().map(|power| power_name(*power)).collect();
-            of_coefficients(*wrong).replace("{}", &names.join(", "))
+            describe_coefficients(*wrong).replace("{}", &names.join(", "))
         }
     }
 }
 
-const fn of_list(guess: ListGuess) -> &'static str {
+const fn describe_list(guess: ListGuess) -> &'static str {
     match guess {
         ListGuess::AllZero => "All coefficients are zero, or none is logged",
         ListGuess::Constant => "A constant is used instead of the polynomial",
@@ -66,7 +66,7 @@ const fn of_list(guess: ListGuess) -> &'static str {
     }
 }
 
-const fn of_quantity(guess: QuantityGuess) -> &'static str {
+const fn describe_quantity(guess: QuantityGuess) -> &'static str {
     match guess {
         QuantityGuess::Sign => "A dot product of the formula has the wrong sign",
         QuantityGuess::Zero => "A quantity of the formula is zero",
@@ -76,7 +76,7 @@ const fn of_quantity(guess: QuantityGuess) -> &'static str {
 }
 
 /// Returns the fault of coefficients, whose names are to be put in.
-const fn of_coefficients(guess: CoefficientGuess) -> &'static str {
+const fn describe_coefficients(guess: CoefficientGuess) -> &'static str {
     match guess {
         CoefficientGuess::Several => "Several coefficients are wrong ({})",
         CoefficientGuess::Zero => "The {} coefficient is zero",
@@ -132,9 +132,9 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),
         PolynomialDetail::Factor { power, factor } => format!("t^{power}: multiplied by {factor}, expected 1"),
         PolynomialDetail::Unknown { power } => format!("t^{power}: no simple change explains it"),
-        PolynomialDetail::Weight(weight) => of_weight(weight),
+        PolynomialDetail::Weight(weight) => describe_weight(weight),
         PolynomialDetail::Alternative(weights) => {
-            let weights: Vec<String> = weights.iter().map(of_weight).collect();
+            let weights: Vec<String> = weights.iter().map(describe_weight).collect();
             format!("Can't be told apart here from {}", weights.join("; "))
         }
     }
@@ -163,7 +163,7 @@ fn stands_for(reading: Reading, letter: &str, stand: &Substitute) -> String {
     }
 }
 
-fn of_weight(weight: &Weight) -> String {
+fn describe_weight(weight: &Weight) -> String {
     let Weight { reading, power, letters, expected, actual } = weight;
     let mut meanings: Vec<String> =
         letters.iter().filter(|name| meaning(*reading, name).is_some()).map(|name| described(*reading, name)).collect();

@@ -13,7 +13,7 @@ use fosssim_model::sim::PairKind;
 
 /// Returns the fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {
-    format!("{}: {}.", place(fault), capitalized(&of_fault(fault)))
+    format!("{}: {}.", place(fault), capitalized(&describe_fault(fault)))
 }
 
 /// Returns the parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
@@ -46,7 +46,7 @@ fn area_name(area: Area) -> String {
     name.to_owned()
 }
 
-fn of_fault(fault: &StageFault) -> String {
+fn describe_fault(fault: &StageFault) -> String {
     let fixed = match fault {
         StageFault::Order => "the polynomials are right, but the pairs are tested in another order",
         StageFault::Decisions { wrong, .. } => match wrong {
@@ -56,11 +56,11 @@ fn of_fault(fault: &StageFault) -> String {
                 "the polynomials are right, the decisions are not: contacts are missed, others are superfluous"
             }
         },
-        StageFault::Overlaps { wrong, .. } => of_overlaps(*wrong),
-        StageFault::Change(wrong) => return of_change(wrong),
+        StageFault::Overlaps { wrong, .. } => describe_overlaps(*wrong),
+        StageFault::Change(wrong) => return describe_change(wrong),
         StageFault::ContactTimes => "the contacts are right, but not their times of impact",
-        StageFault::ContactVectors { wrong, .. } => of_vectors(*wrong),
-        StageFault::Responses { wrong, .. } => return of_responses(wrong),
+        StageFault::ContactVectors { wrong, .. } => describe_vectors(*wrong),
+        StageFault::Responses { wrong, .. } => return describe_responses(wrong),
         StageFault::ManyContacts => "the contacts are right, but not the state that they lead to",
         StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show change nothing",
         StageFault::Unresolved { all: false } => "some contacts that the first round's polynomials show change nothing",
@@ -117,10 +117,10 @@ fn of_fault(fault: &StageFault) -> String {
                 "the zones are right at first, but not in later rounds, or there are not as many as there should be"
             }
         },
-        StageFault::Zones(wrong) => of_zones(*wrong),
+        StageFault::Zones(wrong) => describe_zones(*wrong),
         StageFault::Motion { wrong, .. } if wrong.is_empty() => "zones do not move as they should",
         StageFault::Motion { wrong, .. } => {
-            let wrong: Vec<&str> = wrong.iter().map(|wrong| of_motion(*wrong)).collect();
+            let wrong: Vec<&str> = wrong.iter().map(|wrong| describe_motion(*wrong)).collect();
             return wrong.join("; ");
         }
     };
@@ -128,7 +128,7 @@ fn of_fault(fault: &StageFault) -> String {
 }
 
 /// Returns the features of wrong changes of states.
-fn of_change(wrong: &WrongChange) -> String {
+fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right, but "),
         Quantity::Velocity if wrong.cause == ChangeCause::Response => {
@@ -156,7 +156,7 @@ fn of_change(wrong: &WrongChange) -> String {
     format!("{other}{quantity}{whose}{axis} {how}")
 }
 
-const fn of_overlaps(wrong: WrongDecisions) -> &'static str {
+const fn describe_overlaps(wrong: WrongDecisions) -> &'static str {
     match wrong {
         WrongDecisions::Missed => "collisions of bodies that overlap and approach each other are missed",
         WrongDecisions::Superfluous => {
@@ -166,7 +166,7 @@ const fn of_overlaps(wrong: WrongDecisions) -> &'static str {
     }
 }
 
-const fn of_vectors(wrong: WrongVectors) -> &'static str {
+const fn describe_vectors(wrong: WrongVectors) -> &'static str {
     match wrong {
         WrongVectors::Perpendicular => "it is perpendicular to what it should be",
         WrongVectors::Direction => "it has the wrong direction",
@@ -177,7 +177,7 @@ const fn of_vectors(wrong: WrongVectors) -> &'static str {
     }
 }
 
-const fn of_zones(wrong: WrongZones) -> &'static str {
+const fn describe_zones(wrong: WrongZones) -> &'static str {
     match wrong {
         WrongZones::Partly => "some of a zone's particles are not moved with it",
         WrongZones::PartlyStopped => "in zones that must stop, some particles do not",
@@ -192,7 +192,7 @@ const fn of_zones(wrong: WrongZones) -> &'static str {
     }
 }
 
-const fn of_motion(wrong: WrongMotion) -> &'static str {
+const fn describe_motion(wrong: WrongMotion) -> &'static str {
     match wrong {
         WrongMotion::Center => "the center of mass of a zone does not move as it should",
         WrongMotion::Distances => "the particles of a zone do not keep their distances",
@@ -206,7 +206,7 @@ const fn of_motion(wrong: WrongMotion) -> &'static str {
     }
 }
 
-fn of_responses(wrong: &WrongResponses) -> String {
+fn describe_responses(wrong: &WrongResponses) -> String {
     match wrong {
         WrongResponses::Nothing => "contacts change nothing".to_owned(),
         WrongResponses::Unchanged(all) => {

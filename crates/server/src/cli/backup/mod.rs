@@ -6,7 +6,7 @@ mod restore;
 
 pub(super) use restore::restore;
 
-use super::{arguments::Backup, folders::ServiceFolders};
+use super::{arguments::BackupArguments, folders::ServiceFolders};
 use crate::{
     db::{self, Address, Database},
     store::{Store, digest_of_file},
@@ -25,7 +25,7 @@ const SQLITE: &str = "fosssim.db";
 const POSTGRES: &str = "fosssim.dump";
 
 /// Copies everything into a new folder, while the server runs.
-pub(super) async fn backup(arguments: &Backup) -> Result<()> {
+pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     let (folders, output) = (ServiceFolders::find(&arguments.place)?, &arguments.output);
     if output.exists() {
         bail!("{} is there already: a backup is a new folder", output.display());

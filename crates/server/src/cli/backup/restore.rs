@@ -1,7 +1,7 @@
 //! `restore`: a backup becomes a data folder again. The database comes last: a server that is started too early finds
 //! none, and no half of one.
 use super::{
-    super::{arguments::Restore, folders::ServiceFolders},
+    super::{arguments::RestoreArguments, folders::ServiceFolders},
     manifest::{Artifacts, Manifest},
     postgres,
 };
@@ -17,7 +17,7 @@ use std::{
 };
 
 /// Restores a backup into an empty data folder and, where there is one, an empty database.
-pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<()> {
+pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
     if manifest.tables > db::LATEST {
@@ -45,7 +45,7 @@ pub(in crate::cli) async fn restore(arguments: &Restore) -> Result<()> {
 }
 
 /// Fills an empty data folder.
-async fn fill(arguments: &Restore, manifest: &Manifest, copy: &Path) -> Result<()> {
+async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
     let address = folders.database(place);

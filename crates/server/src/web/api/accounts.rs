@@ -1,5 +1,5 @@
 //! Accounts, tokens, and what administrators see.
-use super::super::input::{Asked, At, Before, Body};
+use super::super::input::{AddressParts, Body, ListEnd, QueryInput};
 use crate::{
     access::{Account, Admin, Event, Link, NewToken, Person, Queue, TokenInfo},
     problem::Problem,
@@ -76,7 +76,7 @@ pub(super) async fn new_token(
 #[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]
-pub(super) async fn audit(admin: Admin, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
+pub(super) async fn audit(admin: Admin, QueryInput(asked): QueryInput<ListEnd>) -> Result<Json<Vec<Event>>, Problem> {
     Ok(Json(admin.audit(asked.number()).await?))
 }
 

@@ -1,6 +1,6 @@
 //! Assignments, and how a class stands in them.
 use super::super::{
-    input::{Asked, At, Body, SeenEvent, whole_numbers},
+    input::{AddressParts, Body, QueryInput, SeenEvent, whole_numbers},
     look, upload,
 };
 use crate::{
@@ -82,8 +82,8 @@ pub(super) struct Extension {
     responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
     staff: Staff,
-    At { assignment, .. }: At,
-    Asked(asked): Asked<Revision>,
+    AddressParts { assignment, .. }: AddressParts,
+    QueryInput(asked): QueryInput<Revision>,
     request: Request,
 ) -> Result<Json<Assignment>, Problem> {
     Ok(Json(receive_suite(&staff, &assignment, &asked, request).await?))
@@ -141,8 +141,8 @@ fn check_scenes(folder: &Path) -> Result<bool, Problem> {
     responses((status = 200, description = "The grades")))]
 pub(super) async fn export(
     staff: Staff,
-    At { assignment, .. }: At,
-    Asked(asked): Asked<GradesFormat>,
+    AddressParts { assignment, .. }: AddressParts,
+    QueryInput(asked): QueryInput<GradesFormat>,
 ) -> Result<Response, Problem> {
     let format = asked.format.as_deref().unwrap_or("csv");
     let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.slug);

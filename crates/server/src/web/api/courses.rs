@@ -1,5 +1,5 @@
 //! Courses and their members.
-use super::super::input::{Asked, At, Before, Body, PlainBody, SeenEvent};
+use super::super::input::{AddressParts, Body, ListEnd, PlainBody, QueryInput, SeenEvent};
 use crate::{
     access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
     problem::Problem,
@@ -41,8 +41,8 @@ pub(super) struct MemberWish {
     responses((status = 204, description = "Removed")))]
 pub(super) async fn remove_course(
     admin: Admin,
-    At { course, .. }: At,
-    Asked(asked): Asked<Confirm>,
+    AddressParts { course, .. }: AddressParts,
+    QueryInput(asked): QueryInput<Confirm>,
 ) -> Result<StatusCode, Problem> {
     if asked.confirm != course {
         return Err(Problem::conflict(
@@ -75,8 +75,8 @@ pub(super) struct Preview {
     responses((status = 200, body = Vec<MemberLine>)))]
 pub(super) async fn import(
     staff: Staff,
-    Asked(asked): Asked<Preview>,
-    Asked(seen): Asked<SeenEvent>,
+    QueryInput(asked): QueryInput<Preview>,
+    QueryInput(seen): QueryInput<SeenEvent>,
     PlainBody(table): PlainBody,
 ) -> Result<Json<Vec<MemberLine>>, Problem> {
     Ok(Json(staff.import(&table, asked.preview, seen.event()).await?))
@@ -86,7 +86,7 @@ pub(super) async fn import(
 #[utoipa::path(get, path = "/api/v1/courses/{course}/audit", operation_id = "course_audit", tag = "courses",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]
-pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Result<Json<Vec<Event>>, Problem> {
+pub(super) async fn audit(staff: Staff, QueryInput(asked): QueryInput<ListEnd>) -> Result<Json<Vec<Event>>, Problem> {
     Ok(Json(staff.audit(asked.number()).await?))
 }
 

@@ -10,7 +10,7 @@ macro_rules! answers {
         #[utoipa::path($method, path = $path, tag = $tag $(, request_body = $body)?,
             responses((status = $status, body = $type)))]
         pub(super) async fn $name(
-            $who: $role $(, At { $($at,)* .. }: At)? $(, Body($wish): Body<$body>)?
+            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Body($wish): Body<$body>)?
         ) -> Result<(StatusCode, Json<$type>), Problem> {
             Ok((StatusCode::$status, Json($answer.await?.into())))
         })*
@@ -26,7 +26,8 @@ macro_rules! deeds {
         #[utoipa::path($method, path = $path, tag = $tag $(, params($query))? $(, request_body = $body)?,
             responses((status = $status, description = $done)))]
         pub(super) async fn $name(
-            $who: $role $(, At { $($at,)* .. }: At)? $(, Asked($asked): Asked<$query>)? $(, Body($wish): Body<$body>)?
+            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, QueryInput($asked): QueryInput<$query>)?
+                $(, Body($wish): Body<$body>)?
         ) -> Result<StatusCode, Problem> {
             $do.await?;
             Ok(StatusCode::$status)

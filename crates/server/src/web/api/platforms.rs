@@ -1,5 +1,5 @@
 //! Learning platforms.
-use super::super::input::{Asked, At, Body};
+use super::super::input::{AddressParts, Body, QueryInput};
 use crate::{
     access::{Admin, RosterRead, RosterWish, ScoreInfo, Staff},
     lti::{Platform, PlatformWish},
@@ -22,7 +22,10 @@ pub(super) struct RosterParameters {
     params(("preview" = Option<bool>, Query, description = "Only say who would come and go"),
         ("confirm" = Option<bool>, Query, description = "Also when more than a third leaves")),
     responses((status = 200, body = RosterRead)))]
-pub(super) async fn roster(staff: Staff, Asked(asked): Asked<RosterParameters>) -> Result<Json<RosterRead>, Problem> {
+pub(super) async fn roster(
+    staff: Staff,
+    QueryInput(asked): QueryInput<RosterParameters>,
+) -> Result<Json<RosterRead>, Problem> {
     let wish = match asked {
         RosterParameters { preview: true, .. } => RosterWish::Preview,
         RosterParameters { confirm: true, .. } => RosterWish::Confirmed,

@@ -1,5 +1,5 @@
 //! Regrades: begun, looked at, applied or discarded.
-use super::super::input::{After, Asked, At, Body, whole_numbers};
+use super::super::input::{AddressParts, Body, ListStart, QueryInput, whole_numbers};
 use crate::{
     access::{Regrade, Settings, Staff},
     problem::Problem,
@@ -30,8 +30,8 @@ pub(super) struct RegradeWish {
     responses((status = 200, body = Regrade)))]
 pub(super) async fn show(
     staff: Staff,
-    At { assignment, id, .. }: At,
-    Asked(asked): Asked<After>,
+    AddressParts { assignment, id, .. }: AddressParts,
+    QueryInput(asked): QueryInput<ListStart>,
 ) -> Result<Json<Regrade>, Problem> {
     Ok(Json(staff.show_regrade(&assignment, id, asked.after).await?))
 }

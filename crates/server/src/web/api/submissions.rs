@@ -1,11 +1,11 @@
 //! Submissions.
 use super::super::{
     download,
-    input::{Arrived, Asked, At, Body},
+    input::{AddressParts, ArrivalTime, Body, QueryInput},
     look, upload,
 };
 use crate::{
-    access::{Accepted, Again, History, Member, Staff, Standing, Submission, Upload},
+    access::{History, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
 };
@@ -36,8 +36,8 @@ pub(super) struct UploadParameters {
     responses((status = 201, body = Submission), (status = 200, body = Submission)))]
 pub(super) async fn submit(
     member: Member,
-    At { assignment, .. }: At,
-    Asked(about): Asked<UploadParameters>,
+    AddressParts { assignment, .. }: AddressParts,
+    QueryInput(about): QueryInput<UploadParameters>,
     headers: HeaderMap,
     request: Request,
 ) -> Result<Response, Problem> {
@@ -45,7 +45,7 @@ pub(super) async fn submit(
         None => None,
         Some(key) => Some(key.to_str().map_err(|_| Problem::invalid("Idempotency-Key is not ASCII"))?),
     };
-    let Accepted { submission, repeated } =
+    let SubmitResult { submission, repeated } =
         receive(&member, &assignment, request, about.name.as_deref(), about.form.as_deref(), key).await?;
     let status = if repeated { StatusCode::OK } else { StatusCode::CREATED };
     let place = format!("/api/v1/courses/{}/submissions/{}", member.slug, submission.id);
@@ -60,11 +60,11 @@ pub(in crate::web) async fn receive(
     name: Option<&str>,
     form: Option<&str>,
     key: Option<&str>,
-) -> Result<Accepted, Problem> {
+) -> Result<SubmitResult, Problem> {
     let _transfer = member.transfer()?;
     let settings = member.assignment(assignment).await?.settings;
     let most = settings.max_bytes;
-    let since = request.extensions().get::<Arrived>().map_or_else(Instant::now, |Arrived(since)| *since);
+    let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
     // Of a form nobody knows yet whether it was sent before.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced(&request).unwrap_or(0)));
     let came_at = match member.check_announced(assignment, announced, since).await {
@@ -117,7 +117,11 @@ pub(in crate::web) struct RequestWish {
 /// Returns a report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
     responses((status = 200, description = "The report")))]
-pub(super) async fn report(member: Member, At { id, name, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn report(
+    member: Member,
+    AddressParts { id, name, .. }: AddressParts,
+    asked: HeaderMap,
+) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
     // It holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
@@ -134,7 +138,11 @@ pub(super) async fn report(member: Member, At { id, name, .. }: At, asked: Heade
 /// Returns the upload.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     responses((status = 200, description = "The file")))]
-pub(super) async fn upload(member: Member, At { id, .. }: At, asked: HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn upload(
+    member: Member,
+    AddressParts { id, .. }: AddressParts,
+    asked: HeaderMap,
+) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;
     // A stranger's file, to be kept and never to be shown. Its name was made harmless when it came.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
@@ -188,13 +196,13 @@ pub(in crate::web) fn cell(text: &str) -> String {
 answers! { ACCEPTED:
     /// Grades a submission once more, by the assignment's settings as they are.
     post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
-        grade_again(staff: Staff, { id }) -> Again: staff.grade_again(id);
+        grade_again(staff: Staff, { id }) -> RegradeOrder: staff.grade_again(id);
     /// Grades all submissions to an assignment on which the grader failed once more.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
-        grade_errors_again(staff: Staff, { assignment }) -> Again: staff.grade_errors_again(Some(&assignment));
+        grade_errors_again(staff: Staff, { assignment }) -> RegradeOrder: staff.grade_errors_again(Some(&assignment));
     /// Grades again all judge errors of a course's assignments.
     post "/api/v1/courses/{course}/judge-errors/again" "submissions"
-        grade_all_errors_again(staff: Staff) -> Again: staff.grade_errors_again(None);
+        grade_all_errors_again(staff: Staff) -> RegradeOrder: staff.grade_errors_again(None);
 }
 
 answers! { OK:

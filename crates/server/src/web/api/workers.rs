@@ -2,7 +2,7 @@
 //! is shown in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
 use super::super::{
     download,
-    input::{At, Body},
+    input::{AddressParts, Body},
     upload,
 };
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     problem::{Problem, ensure},
     queue::Lease,
     store::{Artifact, Digest},
-    wire::{Alive, Claimed, Finished, JobFault, LeaseAnswer, Manners, Renewal},
+    wire::{ClaimedJob, FinishedJob, JobFault, LeaseAnswer, Manners, Renewal, SignOfLife},
 };
 use axum::{
     Json,
@@ -21,7 +21,7 @@ use axum::{
 
 /// Claims the next job; 204 when there is none.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
-    responses((status = 200, body = Claimed), (status = 204, description = "No job")))]
+    responses((status = 200, body = ClaimedJob), (status = 204, description = "No job")))]
 pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
     Ok(match remote.claim().await? {
         Some(job) => Json(job).into_response(),
@@ -32,7 +32,8 @@ pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
 answers! { OK:
     /// Says that the worker is alive.
     post "/api/v1/worker/tick" "workers"
-        tick(remote: Remote, alive: Alive) -> Manners: remote.tick(alive.slots, alive.fault.as_deref(), &alive.version);
+        tick(remote: Remote, alive: SignOfLife) -> Manners:
+            remote.tick(alive.slots, alive.fault.as_deref(), &alive.version);
     /// Extends a lease, and says how far the grading is.
     post "/api/v1/worker/renew" "workers"
         renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
@@ -44,7 +45,7 @@ answers! { OK:
         fail(remote: Remote, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
     /// Brings a result.
     post "/api/v1/worker/finish" "workers"
-        finish(remote: Remote, result: Finished) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
+        finish(remote: Remote, result: FinishedJob) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
 }
 
 fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
@@ -61,7 +62,11 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
 #[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     responses((status = 200, description = "The file's bytes")))]
-pub(super) async fn artifact(remote: Remote, At { digest, .. }: At, headers: HeaderMap) -> Result<Response, Problem> {
+pub(super) async fn artifact(
+    remote: Remote,
+    AddressParts { digest, .. }: AddressParts,
+    headers: HeaderMap,
+) -> Result<Response, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let opened = remote.artifact(&lease(&headers)?, &digest).await?;
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
@@ -73,7 +78,11 @@ pub(super) async fn artifact(remote: Remote, At { digest, .. }: At, headers: Hea
     params(("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 200, body = Artifact)))]
-pub(super) async fn store(remote: Remote, At { digest, .. }: At, request: Request) -> Result<Json<Artifact>, Problem> {
+pub(super) async fn store(
+    remote: Remote,
+    AddressParts { digest, .. }: AddressParts,
+    request: Request,
+) -> Result<Json<Artifact>, Problem> {
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let lease = lease(request.headers())?;
     let most = remote.check_held(&lease).await?;

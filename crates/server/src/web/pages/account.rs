@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{PasswordWish, TokenName},
-        input::{At, Fields},
+        input::{AddressParts, Fields},
     },
     Page, PageFrame, see, show, text,
 };
@@ -31,12 +31,12 @@ struct AccountPage<'a> {
 }
 
 pub(super) async fn home(person: Person) -> Page {
-    let frame = PageFrame::of(&person.account);
+    let frame = PageFrame::for_account(&person.account);
     show(&Home { frame, courses: person.courses().await?, person })
 }
 
 async fn page(person: &Person, new: Option<String>) -> Page {
-    let frame = PageFrame::of(&person.account).then("/account".to_owned(), "Account");
+    let frame = PageFrame::for_account(&person.account).then("/account".to_owned(), "Account");
     show(&AccountPage { frame, person, tokens: person.tokens().await?, new })
 }
 

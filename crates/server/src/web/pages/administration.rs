@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{CourseWish, WorkerTokenName},
-        input::{Asked, At, Fields},
+        input::{AddressParts, Fields, QueryInput},
     },
     Page, PageFrame,
     course::People,
@@ -46,7 +46,7 @@ async fn make(admin: &Admin, look: People, link: Option<String>, token: Option<S
     let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
     let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
     show(&AdminPage {
-        frame: PageFrame::of(&admin.account).then("/admin".to_owned(), "Administration"),
+        frame: PageFrame::for_account(&admin.account).then("/admin".to_owned(), "Administration"),
         accounts,
         look,
         after,
@@ -60,7 +60,7 @@ async fn make(admin: &Admin, look: People, link: Option<String>, token: Option<S
     })
 }
 
-pub(super) async fn page(admin: Admin, Asked(look): Asked<People>) -> Page {
+pub(super) async fn page(admin: Admin, QueryInput(look): QueryInput<People>) -> Page {
     make(&admin, look, None, None).await
 }
 

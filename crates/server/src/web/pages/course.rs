@@ -1,6 +1,6 @@
 //! A course: its assignments, members, queue and audit log.
 use super::{
-    super::input::{Asked, At, Before, Fields},
+    super::input::{AddressParts, Fields, ListEnd, QueryInput},
     Page, PageFrame, see, show, text,
 };
 use crate::{
@@ -47,7 +47,7 @@ pub(super) struct OwnWork {
 }
 
 impl OwnWork {
-    pub(super) async fn of(member: &Member, assignment: &Assignment) -> Result<Self, Problem> {
+    pub(super) async fn read(member: &Member, assignment: &Assignment) -> Result<Self, Problem> {
         let due = member.due(assignment).await?;
         let submissions = member.submissions(&assignment.slug).await?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
@@ -126,7 +126,7 @@ pub(super) struct MemberRemoval {
 pub(super) async fn course(member: Member) -> Page {
     let mut assignments = Vec::new();
     for assignment in member.assignments().await? {
-        let (work, overview) = (OwnWork::of(&member, &assignment).await?, member.overview(&assignment).await?);
+        let (work, overview) = (OwnWork::read(&member, &assignment).await?, member.overview(&assignment).await?);
         assignments.push(Row { assignment, work, overview });
     }
     let (frame, kept) = (PageFrame::course(&member), member.told_of_kept().await?);
@@ -171,7 +171,7 @@ async fn members_page(staff: &Staff, look: People, link: Option<(String, String)
     show(&MembersPage { frame, slug, members, look, after, platforms: staff.platforms().await?, seen, link })
 }
 
-pub(super) async fn members(staff: Staff, Asked(look): Asked<People>) -> Page {
+pub(super) async fn members(staff: Staff, QueryInput(look): QueryInput<People>) -> Page {
     members_page(&staff, look, None).await
 }
 
@@ -181,12 +181,12 @@ pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) ->
     members_page(&staff, People::default(), link.map(|link| (login.to_owned(), link))).await
 }
 
-pub(super) async fn member_link(staff: Staff, At { login, .. }: At) -> Page {
+pub(super) async fn member_link(staff: Staff, AddressParts { login, .. }: AddressParts) -> Page {
     let link = staff.new_link(&login).await?.link;
     members_page(&staff, People::default(), link.map(|link| (login, link))).await
 }
 
-pub(super) async fn audit(staff: Staff, Asked(asked): Asked<Before>) -> Page {
+pub(super) async fn audit(staff: Staff, QueryInput(asked): QueryInput<ListEnd>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
     show(&AuditPage { frame, slug, events: staff.audit(asked.number()).await? })

@@ -1,6 +1,6 @@
 //! The class, and regrades.
 use super::{
-    super::input::{After, Asked, At, Fields},
+    super::input::{AddressParts, Fields, ListStart, QueryInput},
     Page, PageFrame, scenes, see,
     settings::{Grading, SuiteOption, suites},
     show,
@@ -104,10 +104,14 @@ pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
 }
 
-pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At, Asked(look): Asked<Look>) -> Page {
+pub(super) async fn class(
+    staff: Staff,
+    AddressParts { course: slug, assignment, .. }: AddressParts,
+    QueryInput(look): QueryInput<Look>,
+) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let standings = staff.short_standings(&assignment).await?;
-    let statistics = Statistics::of(&standings);
+    let statistics = Statistics::from_standings(&standings);
     let (standings, found, [before, after]) = look.at(&standings);
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
@@ -133,7 +137,7 @@ pub(super) async fn class(staff: Staff, At { course: slug, assignment, .. }: At,
 
 pub(super) async fn begin(
     staff: Staff,
-    At { course: slug, assignment, .. }: At,
+    AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.over(&staff.assignment(&assignment).await?.settings)?;
@@ -143,8 +147,8 @@ pub(super) async fn begin(
 
 pub(super) async fn show_regrade(
     staff: Staff,
-    At { course: slug, assignment, id, .. }: At,
-    Asked(asked): Asked<After>,
+    AddressParts { course: slug, assignment, id, .. }: AddressParts,
+    QueryInput(asked): QueryInput<ListStart>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let regrade = staff.show_regrade(&assignment.slug, id, asked.after).await?;

@@ -8,7 +8,7 @@ macro_rules! deeds {
             $do:expr => $to:literal $(, $part:expr)*;)*) => {
         $($(#[doc = $doc])*
         pub(super) async fn $name(
-            $who: $role $(, At { $($at,)* .. }: At)? $(, Fields($form): Fields<$fields>)?
+            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Fields($form): Fields<$fields>)?
         ) -> Result<Redirect, Problem> {
             $do.await?;
             Ok(see(&format!($to $(, $part)*)))
@@ -155,12 +155,12 @@ pub(super) struct PageFrame {
 }
 
 impl PageFrame {
-    fn of(account: &Account) -> Self {
+    fn for_account(account: &Account) -> Self {
         Self { login: Some(account.login.clone()), is_admin: account.is_admin, way: Vec::new() }
     }
 
     fn course(member: &Member) -> Self {
-        Self::of(&member.account).then(format!("/c/{}", member.slug), &member.title)
+        Self::for_account(&member.account).then(format!("/c/{}", member.slug), &member.title)
     }
 
     /// Returns the place at an assignment of a course.

@@ -1,13 +1,13 @@
 //! Coming from a learning platform.
 use super::{
     super::{
-        input::{At, Fields},
+        input::{AddressParts, Fields},
         who::browser_cookie,
     },
     Page, PageFrame, see, show, sign_in,
 };
 use crate::{
-    access::{Admin, App, Choice, Chosen, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
+    access::{Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
     lti::{PlatformWish, scope},
     problem::Problem,
 };
@@ -42,7 +42,7 @@ struct WindowPage {
 struct ChoicePage {
     frame: PageFrame,
     secret: String,
-    choice: Choice,
+    choice: LinkTarget,
 }
 
 #[derive(Template)]
@@ -192,20 +192,21 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     }))
 }
 
-pub(super) async fn choose(person: Person, At { secret, .. }: At) -> Page {
+pub(super) async fn choose(person: Person, AddressParts { secret, .. }: AddressParts) -> Page {
     let choice = person.choice(&secret).await?;
-    show(&ChoicePage { frame: PageFrame::of(&person.account), secret, choice })
+    show(&ChoicePage { frame: PageFrame::for_account(&person.account), secret, choice })
 }
 
 pub(super) async fn choose_assignment(
     person: Person,
-    At { secret, .. }: At,
+    AddressParts { secret, .. }: AddressParts,
     Fields(choice): Fields<AssignmentChoice>,
 ) -> Result<Response, Problem> {
     match person.choose_assignment(&secret, &choice.assignment).await? {
-        Chosen::Assignment(path) => Ok(see(&path).into_response()),
-        Chosen::Answer { address, origins, token } => {
-            let page = show(&AnswerPage { frame: PageFrame::of(&person.account), address, token })?.into_response();
+        LinkStep::Assignment(path) => Ok(see(&path).into_response()),
+        LinkStep::Answer { address, origins, token } => {
+            let page =
+                show(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();
             let policy = format!(
                 "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors \
                 'none'"

@@ -1,6 +1,6 @@
 //! Removing for ever: forms that say what goes, and name what is meant.
 use super::{
-    super::input::{At, Fields},
+    super::input::{AddressParts, Fields},
     see,
 };
 use crate::{
@@ -12,24 +12,24 @@ use serde::Deserialize;
 
 /// The form's confirmation: the name of the thing that is to be removed.
 #[derive(Deserialize)]
-pub(super) struct Confirmed {
+pub(super) struct Confirmation {
     confirm: String,
 }
 
-impl Confirmed {
+impl Confirmation {
     fn is(&self, what: &str) -> Result<(), Problem> {
         if self.confirm == what { Ok(()) } else { Err(Problem::invalid("this form is of something else")) }
     }
 }
 
 deeds! {
-    remove_submission(staff: Staff, { course, id }, form: Confirmed):
+    remove_submission(staff: Staff, { course, id }, form: Confirmation):
         { form.is(&id.to_string())?; staff.remove_submission(id) } => "/c/{course}";
-    remove_assignment(staff: Staff, { course, assignment }, form: Confirmed):
+    remove_assignment(staff: Staff, { course, assignment }, form: Confirmation):
         { form.is(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
-    remove_course(admin: Admin, { course }, form: Confirmed):
+    remove_course(admin: Admin, { course }, form: Confirmation):
         { form.is(&course)?; admin.remove_course(&course) } => "/";
-    remove_person(admin: Admin, { login }, form: Confirmed):
+    remove_person(admin: Admin, { login }, form: Confirmation):
         { form.is(&login)?; admin.remove_person(&login) } => "/admin";
     shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin";
 }

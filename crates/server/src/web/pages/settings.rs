@@ -2,7 +2,7 @@
 use super::{
     super::{
         api::{self, Revision},
-        input::{Asked, At, Fields},
+        input::{AddressParts, Fields, QueryInput},
     },
     Page, PageFrame, see, show, text,
 };
@@ -146,7 +146,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
     Ok(same.or(Some(at)))
 }
 
-pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) -> Page {
+pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
     let frame = PageFrame::assignment(&staff, &assignment).then(address, "Settings");
@@ -157,7 +157,7 @@ pub(super) async fn page(staff: Staff, At { course: slug, assignment, .. }: At) 
 
 pub(super) async fn set(
     staff: Staff,
-    At { course: slug, assignment, .. }: At,
+    AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
     // An assignment is made on the course's page: a typing error in an address makes none.
@@ -172,8 +172,8 @@ pub(super) async fn set(
 
 pub(super) async fn set_suite(
     staff: Staff,
-    At { course: slug, assignment, .. }: At,
-    Asked(asked): Asked<Revision>,
+    AddressParts { course: slug, assignment, .. }: AddressParts,
+    QueryInput(asked): QueryInput<Revision>,
     request: Request,
 ) -> Result<Redirect, Problem> {
     let assignment = api::receive_suite(&staff, &assignment, &asked, request).await?;

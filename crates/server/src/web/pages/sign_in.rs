@@ -2,7 +2,7 @@
 use super::{
     super::{
         guard::{SESSION, session_cookie},
-        input::{Asked, At, Fields},
+        input::{AddressParts, Fields, QueryInput},
     },
     Page, PageFrame, see, show,
 };
@@ -76,7 +76,7 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(visitor: Visitor, Asked(NextPage { to }): Asked<NextPage>) -> Page {
+pub(super) async fn page(visitor: Visitor, QueryInput(NextPage { to }): QueryInput<NextPage>) -> Page {
     show(&SignIn { frame: PageFrame::default(), takes_passwords: visitor.app.takes_passwords(), to })
 }
 
@@ -91,11 +91,11 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
 }
 
 /// Shows the page of a sign-in link. Opening the link does nothing yet: mail programs open links, too.
-pub(super) async fn welcome(visitor: Visitor, At { secret, .. }: At) -> Page {
+pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
     show(&Welcome { frame: PageFrame::default(), is_good: visitor.is_link(&secret).await? })
 }
 
-pub(super) async fn by_link(visitor: Visitor, At { secret, .. }: At) -> Result<Response, Problem> {
+pub(super) async fn by_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
     Ok(enter(&visitor.app, &session, "/"))
 }

@@ -15,7 +15,7 @@ pub(super) struct Statistics {
 
 impl Statistics {
     /// Returns the statistics of those who have points; nothing where nobody has.
-    pub(super) fn of(standings: &[ShortStanding]) -> Option<Self> {
+    pub(super) fn from_standings(standings: &[ShortStanding]) -> Option<Self> {
         let mut parts = Vec::new();
         let mut accepted = 0;
         let mut mistakes: BTreeMap<String, (Vec<String>, i64)> = BTreeMap::new();

@@ -2,14 +2,14 @@
 use super::{
     super::{
         api::{RequestWish, cell},
-        input::{At, Fields},
+        input::{AddressParts, Fields},
     },
     Page, PageFrame, grades, scenes, see,
     settings::moment,
     show, text,
 };
 use crate::{
-    access::{Assignment, AttemptChange, Member, MemberLine, Staff, Submission, Work},
+    access::{Assignment, AttemptChange, Member, MemberLine, Staff, StudentHistory, Submission},
     problem::Problem,
 };
 use askama::Template;
@@ -24,7 +24,7 @@ struct StudentPage {
     frame: PageFrame,
     slug: String,
     assignment: Assignment,
-    work: Work,
+    work: StudentHistory,
     /// The changes that attempts have made, by the numbers of their submissions.
     changes: BTreeMap<i64, String>,
     /// The last event of the course that the page shows.
@@ -85,11 +85,11 @@ pub(super) struct ImportedTable {
     seen: Option<i64>,
 }
 
-pub(super) async fn page(staff: Staff, At { course: slug, assignment, login, .. }: At) -> Page {
+pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     // Before the work: what somebody changes in between is not seen.
     let seen = staff.last_event().await?;
-    let work = staff.work(&assignment.slug, &login).await?;
+    let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
     let frame = grades::frame(&staff, &assignment).then(address, &work.name);
     let graded: Vec<(&Submission, i64)> =
@@ -156,7 +156,7 @@ pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTabl
 
 deeds! {
     extend(staff: Staff, { course, assignment, login }, form: NewExtension): {
-        let before = staff.work(&assignment, &login).await?.extended_to;
+        let before = staff.student_history(&assignment, &login).await?.extended_to;
         staff.extend(&assignment, &login, moment(&form.due, &form.due_zone, before)?, form.seen)
     } => "/c/{course}/a/{assignment}/students/{login}";
     mark(staff: Staff, { course, id }, form: NewMark):

@@ -1,6 +1,6 @@
 //! Handing in, and what came of it.
 use super::{
-    super::{api, input::At},
+    super::{api, input::AddressParts},
     Page, PageFrame,
     course::OwnWork,
     scenes, see, show, text,
@@ -45,16 +45,16 @@ struct SubmissionPage {
     page: Option<&'static str>,
 }
 
-pub(super) async fn assignment(member: Member, At { assignment, .. }: At) -> Page {
+pub(super) async fn assignment(member: Member, AddressParts { assignment, .. }: AddressParts) -> Page {
     let assignment = member.assignment(&assignment).await?;
     let frame = PageFrame::assignment(&member, &assignment);
-    let work = OwnWork::of(&member, &assignment).await?;
+    let work = OwnWork::read(&member, &assignment).await?;
     show(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }
 
 pub(super) async fn submit(
     member: Member,
-    At { course: slug, assignment, .. }: At,
+    AddressParts { course: slug, assignment, .. }: AddressParts,
     request: Request,
 ) -> Result<Redirect, Problem> {
     let accepted = api::receive(&member, &assignment, request, None, None, None).await?;
@@ -74,7 +74,7 @@ fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submissi
     frame.then(address, &format!("Submission {}", submission.number))
 }
 
-pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
+pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressParts) -> Page {
     let submission = member.submission(id).await?;
     let assignment = find_assignment(&member, &submission).await?;
     let has =
@@ -88,7 +88,7 @@ pub(super) async fn submission(member: Member, At { id, .. }: At) -> Page {
     let is_own = submission.login == member.account.login;
     // Staff may have hidden the assignment again.
     let work = match &assignment {
-        Some(assignment) if is_own && !member.is_staff => Some(OwnWork::of(&member, assignment).await?),
+        Some(assignment) if is_own && !member.is_staff => Some(OwnWork::read(&member, assignment).await?),
         _ => None,
     };
     show(&SubmissionPage {

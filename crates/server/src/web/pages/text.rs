@@ -54,7 +54,7 @@ pub(super) fn short(digest: &str) -> &str {
 }
 
 /// Returns how the chip of a submission's state looks.
-pub(super) fn look(submission: &Submission) -> &'static str {
+pub(super) fn chip_class(submission: &Submission) -> &'static str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) => "warn",
         (_, Some(grade)) if grade.verdict == "accepted" => "good",
@@ -72,7 +72,7 @@ pub(super) fn outcome(submission: &Submission) -> &str {
 
 /// Returns whether a submission is accepted.
 pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
-    submission.as_ref().is_some_and(|submission| look(submission) == "good")
+    submission.as_ref().is_some_and(|submission| chip_class(submission) == "good")
 }
 
 /// Returns a size in bytes, in the unit that leaves few digits.
@@ -82,7 +82,7 @@ pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
 
 /// Returns the grade's points; a dash while there are none. Points by hand are of the whole grade: they have no maximum
 /// of the groups that are shown.
-pub(super) fn of(submission: &Submission) -> String {
+pub(super) fn grade_points(submission: &Submission) -> String {
     let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
     if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
         return by_hand.clone();

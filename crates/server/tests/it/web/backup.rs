@@ -86,7 +86,10 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
         let id = submission["id"].as_i64().expect("a number");
         assert_eq!(ada.wait_for_grade("physics", id)["grade"]["code"], "WA");
         let upload = ada.get(&format!("/api/v1/courses/physics/submissions/{id}/upload")).expect(200).body;
-        assert_eq!(fosssim_server::store::Digest::of(&upload).as_str(), submission["digest"].as_str().expect("one"));
+        assert_eq!(
+            fosssim_server::store::Digest::from_bytes(&upload).as_str(),
+            submission["digest"].as_str().expect("one")
+        );
     }
 }
 
@@ -121,7 +124,7 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         let text = copy.to_str().expect("UTF-8");
         assert_eq!(command(&["backup", text], &server.folder, Some(&server.database())).0, Some(0));
         let restore = |number: u32| command(&["restore", text], &folder.path().join(number.to_string()), None);
-        let upload = fosssim_server::store::Digest::of(&program("WA", 40));
+        let upload = fosssim_server::store::Digest::from_bytes(&program("WA", 40));
         let (first, rest) = upload.as_str().split_at(2);
         let artifact = copy.join("store/sha256").join(first).join(rest);
         let refused = |number: u32, what: &str| {

@@ -48,7 +48,7 @@ async fn a_digest_opens_no_suite_of_another_course(fresh: Fresh) {
         assert!(!told.contains(&digest[..12]), "{door}: {told}");
     }
     // Its digest opens nothing elsewhere: neither in settings nor in a regrade; nor does that of any other upload.
-    let upload = fosssim_server::store::Digest::of(&program("WA", 1)).to_string();
+    let upload = fosssim_server::store::Digest::from_bytes(&program("WA", 1)).to_string();
     for (client, course, digest) in [(&thief, "b", &digest), (&thief, "b", &upload), (&teacher, "a", &upload)] {
         let settings = format!(r#"{{"suite_archive": "{digest}", "hints": "full"}}"#);
         let refused = put(client, course, &settings).expect(409).text();

@@ -227,7 +227,7 @@ async fn a_worker_reaches_the_jobs_that_it_holds_and_nothing_else(fresh: Fresh) 
         worker.send("PUT", &format!("/api/v1/worker/files/{digest}"), &[("Fosssim-Lease", &shown)], bytes)
     };
     put(report, b"a report").expect(400);
-    let report = fosssim_server::store::Digest::of(b"a report").to_string();
+    let report = fosssim_server::store::Digest::from_bytes(b"a report").to_string();
     put(&report, b"another report").expect(400);
     put(&report, b"a report").expect(200);
     finish("WA", "1", "../../index.html", &report).expect(400);
@@ -281,7 +281,7 @@ fn a_report_waits_for_whoever_takes_the_job_away() {
         let worker = server.with_token(&worker_token(&admin));
         let lease = worker.post_json("/api/v1/worker/claim", "{}").expect(200).json()["lease"].take();
         let shown = format!("{}:{}:{}", lease["job"], lease["attempt"], lease["key"].as_str().expect("a key"));
-        let path = format!("/api/v1/worker/files/{}", fosssim_server::store::Digest::of(b"a report"));
+        let path = format!("/api/v1/worker/files/{}", fosssim_server::store::Digest::from_bytes(b"a report"));
         let mut taking = fresh.database.begin().await.expect("a transaction");
         let statement = "UPDATE job SET state = 'cancelled', lease_key = NULL, lease_until = NULL";
         taking.execute(statement, values![]).await.expect("a statement");

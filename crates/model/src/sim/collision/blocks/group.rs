@@ -181,7 +181,7 @@ fn all<S: Simd>(simd: S, vector: Vec2) -> Plane<Lanes<S>> {
 
 /// Computes the pairs of a particle with the particles from `second` on; gives the largest moduli so far.
 #[inline(always)]
-pub(super) fn of_particles<S: Simd>(
+pub(super) fn compute_particles<S: Simd>(
     simd: S,
     lists: &Lists,
     [first, second]: [usize; 2],

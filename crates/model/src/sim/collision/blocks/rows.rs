@@ -1,7 +1,7 @@
 //! Goes through all pairs in the order of the trace, particle by particle.
 use super::{
     Group, Lists, Setting,
-    group::{BEHIND, EDGE_KNOWN, EDGE_ROW, OPEN, TWO_KNOWN, TWO_ROW, of_particles},
+    group::{BEHIND, EDGE_KNOWN, EDGE_ROW, OPEN, TWO_KNOWN, TWO_ROW, compute_particles},
     settle::{EDGE_BYTES, LoggedRows, TWO_BYTES, decide_edge, decide_two},
 };
 use crate::sim::{
@@ -92,7 +92,7 @@ impl Pairs<'_> {
             }
             let Some(row) = self.group.edges[(edge * width + lane) * EDGE_ROW..].first_chunk() else { return false };
             let (pair, with) = (pair(PairKind::ParticleEdge, first, edge), (&self.setting, &mut *self.counts));
-            if of_edge(pair, row, with, self.place, output) {
+            if compute_edge(pair, row, with, self.place, output) {
                 return true;
             }
         }
@@ -107,7 +107,7 @@ impl Pairs<'_> {
         let rows = self.group.half_planes.as_chunks::<TWO_ROW>().0;
         for second in seconds {
             let (pair, with) = (pair(PairKind::ParticleHalfPlane, first, second), (&self.setting, &mut *self.counts));
-            if of_two(pair, &rows[second * width + lane], with, self.place, output) {
+            if compute_two(pair, &rows[second * width + lane], with, self.place, output) {
                 return true;
             }
         }
@@ -128,11 +128,11 @@ impl Pairs<'_> {
         let mut ends = false;
         let mut block = seconds.start;
         while block < seconds.end && !ends {
-            largest = of_particles(simd, self.lists, [first, block], rows, largest);
+            largest = compute_particles(simd, self.lists, [first, block], rows, largest);
             for (row, second) in rows.as_chunks().0[..width].iter().zip(block..seconds.end) {
                 let (pair, with) =
                     (pair(PairKind::ParticleParticle, first, second), (&self.setting, &mut *self.counts));
-                ends = of_two(pair, row, with, self.place, output);
+                ends = compute_two(pair, row, with, self.place, output);
                 if ends {
                     break;
                 }
@@ -147,7 +147,7 @@ impl Pairs<'_> {
 /// Decides about a pair with an edge, where that is open, and writes its polynomials. Whether something was found,
 /// which the output holds.
 #[inline(always)]
-fn of_edge(
+fn compute_edge(
     pair: Pair,
     row: &[f64; EDGE_ROW + BEHIND],
     with: (&Setting<'_>, &mut SearchCounts),
@@ -165,7 +165,7 @@ fn of_edge(
 
 /// Decides about a pair of particles, or with a half-plane.
 #[inline(always)]
-fn of_two(
+fn compute_two(
     pair: Pair,
     row: &[f64; TWO_ROW],
     with: (&Setting<'_>, &mut SearchCounts),

@@ -155,6 +155,6 @@ fn decide<const COUNT: usize>(
     if !(time <= 1.0) {
         return Ok(None);
     }
-    let motion = PairMotion::of_bodies(setting.bodies, pair, setting.q_start, setting.displacements);
+    let motion = PairMotion::from_bodies(setting.bodies, pair, setting.q_start, setting.displacements);
     Ok(motion.normal(time).map(|normal| Impulse { pair, normal, time }))
 }

@@ -2,7 +2,7 @@
 use crate::{
     scene::{Collision, Scene},
     sim::{
-        Impulse, Observer, PolynomialBytes, RootSearch, Simulation, State, Wanted,
+        Impulse, Observer, PolynomialBytes, RootSearch, Simulation, State, WantedPairs,
         samples::{Numbers, edge, fixed, half_plane, particle, scene},
     },
 };
@@ -21,8 +21,8 @@ impl Observer for Log {
         self.impulses.clear();
         self.states.clear();
     }
-    fn wanted(&mut self) -> Wanted<'_> {
-        Wanted::Bytes(&mut self.polynomials)
+    fn wanted(&mut self) -> WantedPairs<'_> {
+        WantedPairs::Bytes(&mut self.polynomials)
     }
     fn impulse(&mut self, impulse: &Impulse) {
         self.impulses.push(*impulse);

@@ -7,7 +7,7 @@ use super::sweep::{Sweep, SweepOrder};
 use crate::{
     scene::{CollisionDetection, Scene},
     sim::{
-        nearby::{Nearby, is_beyond},
+        nearby::{NearbyPairs, is_beyond},
         pair::{Pair, PairKind, pair},
         pairs::{Objects, PassCursor, is_end},
     },
@@ -21,7 +21,7 @@ pub struct PenaltyPairs {
     edges: Vec<[usize; 2]>,
     half_planes: usize,
     thickness: f64,
-    nearby: Option<Nearby>,
+    nearby: Option<NearbyPairs>,
     sweep: Option<Box<Sweep>>,
 }
 
@@ -35,7 +35,7 @@ impl PenaltyPairs {
             edges: scene.edges.iter().map(|edge| [edge.first, edge.second]).collect(),
             half_planes: scene.half_planes.len(),
             thickness,
-            nearby: if is_contest { None } else { Nearby::of_many(scene, thickness) },
+            nearby: if is_contest { None } else { NearbyPairs::for_many(scene, thickness) },
             sweep: is_contest.then(|| Box::new(Sweep::new(scene))),
         }
     }
