@@ -13,7 +13,7 @@ pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let outcome = replay::judge(&scene, trace, &options, &mut ());
     let mut text = String::new();
     for (name, book) in [("original", Book::Parity), ("fair", Book::Fair)] {
-        text += &format!("{name}: {}\n", outcome.ruling(book).text());
+        text += &format!("{name}: {}\n", outcome.ruling(book).name());
     }
     let first = outcome.findings_by(Book::Fair).first_divergence;
     Ok(text + &first.map_or(String::new(), |finding| format!("{finding}\n")))

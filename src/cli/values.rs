@@ -67,7 +67,7 @@ pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
 
 /// Returns a milestone of the course.
 pub(super) fn assignment() -> impl TypedValueParser<Value = Assignment> {
-    PossibleValuesParser::new(Assignment::ALL.map(Assignment::key))
+    PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
         .try_map(|key| Assignment::named(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 

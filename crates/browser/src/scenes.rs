@@ -28,7 +28,7 @@ pub(crate) fn list() -> Value {
         let groups = groups.into_iter().map(|(group, names)| json!({ "group": group, "names": names }));
         json!({ "title": assignment.definition().title, "groups": groups.collect::<Vec<_>>() })
     };
-    Assignment::ALL.into_iter().map(of).collect()
+    Assignment::default_first().into_iter().map(of).collect()
 }
 
 /// Returns the XML of a scene, `Group/name`.

@@ -91,7 +91,7 @@ impl DroppedSubmission {
         }
         let likely = result.explanations.first().map(explanation::what);
         let value = json!({
-            "verdict": result.verdict.text(),
+            "verdict": result.verdict.name(),
             "accepted": result.verdict == Verdict::Accepted,
             "isMissing": matches!(result.reason, Reason::NoTrace),
             "right": result.right_steps,
@@ -114,7 +114,7 @@ impl DroppedSubmission {
         let value = json!({
             "points": grade::reached(graded.points),
             "of": grade::points(graded.max_points),
-            "verdict": graded.verdict.text(),
+            "verdict": graded.verdict.name(),
             "unfit": words::unfit(&graded),
             "scenes": scenes,
             "groups": groups,

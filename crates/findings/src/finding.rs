@@ -6,71 +6,51 @@ use fosssim_model::{
 use fosssim_num::polynomial::Polynomial;
 use serde::{Deserialize, Serialize};
 
-/// The kinds of findings, in the order in which reports list them.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum FindingKind {
-    /// A collision of the reference is not in the trace.
-    MissedCollision,
-    /// A collision of the trace is not in the reference.
-    SuperfluousCollision,
-    /// A collision is in both, with different contact normals.
-    WrongNormal,
-    /// The step logged another number of polynomials: detection ran more or less often.
-    PolynomialCount,
-    /// A polynomial has another number of coefficients.
-    PolynomialDegree,
-    /// The reference's coefficients are all tiny, the trace's are not.
-    VanishingPolynomial,
-    /// A coefficient differs after rescaling.
-    Coefficient,
-    /// A particle's position at the end of the step differs.
-    Position,
-    /// A particle's velocity at the end of the step differs.
-    Velocity,
-    /// Fair rules: the time of impact of a collision is wrong.
-    ContactTime,
-    /// Fair rules: a collision is logged more than once.
-    RepeatedCollision,
-    /// Fair rules: a later detection pass of the step looked at wrong positions.
-    PassPositions,
-    /// Fair rules: the two records of a step contradict each other.
-    RecordsDiffer,
-    /// Fair rules: the trace holds what the course's library can't have written.
-    ImpossibleLog,
-    /// Fair rules: coefficients that were lost as too small change a decision.
-    TrimmedDecision,
-    /// Fair rules: the two accepted forms of the approach polynomial are mixed.
-    MixedForms,
-    /// Fair rules: the penalty force between two bodies was left out, or applied twice.
-    PairForce,
-    /// Fair rules: from the step's state, or with its polynomials, no next state exists.
-    NoResult,
+fosssim_num::closed_set! {
+    /// The kinds of findings, in the order in which reports list them.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "snake_case")]
+    pub enum FindingKind {
+        /// A collision of the reference is not in the trace.
+        MissedCollision,
+        /// A collision of the trace is not in the reference.
+        SuperfluousCollision,
+        /// A collision is in both, with different contact normals.
+        WrongNormal,
+        /// The step logged another number of polynomials: detection ran more or less often.
+        PolynomialCount,
+        /// A polynomial has another number of coefficients.
+        PolynomialDegree,
+        /// The reference's coefficients are all tiny, the trace's are not.
+        VanishingPolynomial,
+        /// A coefficient differs after rescaling.
+        Coefficient,
+        /// A particle's position at the end of the step differs.
+        Position,
+        /// A particle's velocity at the end of the step differs.
+        Velocity,
+        /// Fair rules: the time of impact of a collision is wrong.
+        ContactTime,
+        /// Fair rules: a collision is logged more than once.
+        RepeatedCollision,
+        /// Fair rules: a later detection pass of the step looked at wrong positions.
+        PassPositions,
+        /// Fair rules: the two records of a step contradict each other.
+        RecordsDiffer,
+        /// Fair rules: the trace holds what the course's library can't have written.
+        ImpossibleLog,
+        /// Fair rules: coefficients that were lost as too small change a decision.
+        TrimmedDecision,
+        /// Fair rules: the two accepted forms of the approach polynomial are mixed.
+        MixedForms,
+        /// Fair rules: the penalty force between two bodies was left out, or applied twice.
+        PairForce,
+        /// Fair rules: from the step's state, or with its polynomials, no next state exists.
+        NoResult,
+    }
 }
 
 impl FindingKind {
-    /// All kinds, in order.
-    pub const ALL: [Self; 18] = [
-        Self::MissedCollision,
-        Self::SuperfluousCollision,
-        Self::WrongNormal,
-        Self::PolynomialCount,
-        Self::PolynomialDegree,
-        Self::VanishingPolynomial,
-        Self::Coefficient,
-        Self::Position,
-        Self::Velocity,
-        Self::ContactTime,
-        Self::RepeatedCollision,
-        Self::PassPositions,
-        Self::RecordsDiffer,
-        Self::ImpossibleLog,
-        Self::TrimmedDecision,
-        Self::MixedForms,
-        Self::PairForce,
-        Self::NoResult,
-    ];
-
     /// Returns the original's message for it; positions and velocities have none, they only raise residuals, and what
     /// it does not look at has none either.
     #[must_use]

@@ -20,30 +20,22 @@ pub enum Book {
     Fair,
 }
 
-/// Which rule books are asked.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Rules {
-    /// The original's alone.
-    Parity,
-    /// The fair ones; theirs is the official verdict.
-    Fair,
-    /// Both; the original's is the official verdict, and a report says where the fair ones differ.
-    #[default]
-    Both,
+fosssim_num::closed_set! {
+    /// Which rule books are asked.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Rules {
+        /// The original's alone.
+        Parity = "parity",
+        /// The fair ones; theirs is the official verdict.
+        Fair = "fair",
+        /// Both; the original's is the official verdict, and a report says where the fair ones differ.
+        #[default]
+        Both = "both",
+    }
 }
 
 impl Rules {
-    /// Returns the name under which command line and suites know it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Parity => "parity",
-            Self::Fair => "fair",
-            Self::Both => "both",
-        }
-    }
-
     /// Returns the book whose verdict decides exit codes and points.
     #[must_use]
     pub const fn official(self) -> Book {
@@ -60,32 +52,18 @@ impl Rules {
     }
 }
 
-/// The verdict of one book, in words that both share.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Ruling {
-    /// Everything is right.
-    Accepted,
-    /// Nothing is wrong so far, and judging was given up before the end.
-    Undecided,
-    /// The trace is wrong.
-    WrongAnswer,
-    /// The trace can't be read to its end; by the fair rules also: it is damaged, or goes on after its end.
-    BadTrace,
-}
-
-impl Ruling {
-    /// All verdicts.
-    pub const ALL: [Self; 4] = [Self::Accepted, Self::Undecided, Self::WrongAnswer, Self::BadTrace];
-
-    /// Returns the words, such as `wrong answer`.
-    #[must_use]
-    pub const fn text(self) -> &'static str {
-        match self {
-            Self::Accepted => "accepted",
-            Self::Undecided => "undecided",
-            Self::WrongAnswer => "wrong answer",
-            Self::BadTrace => "bad trace",
-        }
+fosssim_num::closed_set! {
+    /// The verdict of one book, in words that both share.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Ruling {
+        /// Everything is right.
+        Accepted = "accepted",
+        /// Nothing is wrong so far, and judging was given up before the end.
+        Undecided = "undecided",
+        /// The trace is wrong.
+        WrongAnswer = "wrong answer",
+        /// The trace can't be read to its end; by the fair rules also: it is damaged, or goes on after its end.
+        BadTrace = "bad trace",
     }
 }
 

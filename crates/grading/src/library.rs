@@ -114,7 +114,7 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 /// Returns a file of an assignment by its path within the assignment's folder, or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     let of = |assignment: Assignment| below(inner(root, assignment.key())?, path);
-    Assignment::ALL.into_iter().find_map(of).or_else(|| below(root, path))
+    Assignment::default_first().into_iter().find_map(of).or_else(|| below(root, path))
 }
 
 /// Returns the file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by

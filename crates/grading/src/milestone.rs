@@ -28,7 +28,7 @@ pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignme
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
     };
     let mut integrators = Vec::new();
-    for (_, integrator) in Integrator::NAMED {
+    for integrator in Integrator::ALL {
         if takes(integrator, "")? {
             integrators.push(integrator);
         }
@@ -38,9 +38,9 @@ pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignme
         let library = &assignment.definition().library;
         let knows = |integrator: &Integrator| library.integrators.contains(integrator);
         library.refuses_collisions != takes_collisions
-            && Integrator::NAMED.iter().all(|(_, one)| knows(one) == integrators.contains(one))
+            && Integrator::ALL.iter().all(|one| knows(one) == integrators.contains(one))
     };
-    Ok(Assignment::ALL.into_iter().find(|assignment| is_traced && fits(assignment)))
+    Ok(Assignment::default_first().into_iter().find(|assignment| is_traced && fits(assignment)))
 }
 
 /// Returns whether a milestone's library lacks integrators or collision types that scenes of another have.

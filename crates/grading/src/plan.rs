@@ -75,7 +75,7 @@ impl Plan {
             self.scenes().filter(|task| task.scene.unknown_to(*assignment).next().is_none()).count()
         };
         // Of several with the same number the last one is the maximum.
-        let by_scenes = || Assignment::COURSE.into_iter().rev().max_by_key(can_run);
+        let by_scenes = || Assignment::ALL.into_iter().rev().max_by_key(can_run);
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 

@@ -56,11 +56,11 @@ const LIMITS: &[Key] = &[
 const HINTS: &[&str] = &["none", "where", "what", "full"];
 
 /// The keys of the milestones, in the order of the course.
-const MILESTONES: [&str; Assignment::COURSE.len()] = {
-    let mut keys = [""; Assignment::COURSE.len()];
+const MILESTONES: [&str; Assignment::ALL.len()] = {
+    let mut keys = [""; Assignment::ALL.len()];
     let mut index = 0;
     while index < keys.len() {
-        keys[index] = Assignment::COURSE[index].key();
+        keys[index] = Assignment::ALL[index].key();
         index += 1;
     }
     keys

@@ -19,6 +19,7 @@
 
 pub mod bounded;
 pub mod certificate;
+mod closed_set;
 pub mod decision;
 pub mod elementary;
 pub mod first_time;

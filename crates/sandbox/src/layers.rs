@@ -6,66 +6,49 @@ use std::sync::Arc;
 
 use super::wire::{Probe, Walls};
 
-/// One wall.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Layer {
-    /// Executing a program never gains privileges.
-    NoNewPrivileges,
-    /// Resource limits, clocks and counters.
-    Limits,
-    /// The supervisor adopts orphans, so that nothing outlives a run.
-    Reaper,
-    /// Copies of programs can be executed: not a wall, but nothing can be graded without.
-    Execution,
-    /// The list of allowed system calls (seccomp).
-    CallFilter,
-    /// Forbidden calls are named in the outcome.
-    NamedCalls,
-    /// Landlock's rules for files.
-    FileRules,
-    /// Landlock's rules for signals and abstract sockets.
-    Scopes,
-    /// Another user for every running program; only root can do this.
-    OwnUser,
-    /// Namespaces: a world without other processes, without network, and with few files.
-    Namespaces,
-    /// A control group per run: the kernel's own counts, and an end for all at one word.
-    ControlGroup,
+/// A row has a wall and its name in reports.
+macro_rules! layers {
+    ($($(#[$about:meta])+ $layer:ident $name:literal;)+) => {
+        /// One wall.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum Layer { $($(#[$about])+ $layer,)+ }
+
+        impl Layer {
+            /// All of them, in the order of a report.
+            pub const ALL: [Self; [$(Self::$layer),+].len()] = [$(Self::$layer),+];
+
+            /// Returns the name in reports.
+            #[must_use]
+            pub const fn name(self) -> &'static str {
+                match self { $(Self::$layer => $name,)+ }
+            }
+        }
+    };
 }
 
-impl Layer {
-    /// All of them, in the order of a report.
-    pub const ALL: [Self; 11] = [
-        Self::NoNewPrivileges,
-        Self::Limits,
-        Self::Reaper,
-        Self::Execution,
-        Self::CallFilter,
-        Self::NamedCalls,
-        Self::FileRules,
-        Self::Scopes,
-        Self::OwnUser,
-        Self::Namespaces,
-        Self::ControlGroup,
-    ];
-
-    /// Returns the name in reports.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::NoNewPrivileges => "no new privileges",
-            Self::Limits => "resource limits",
-            Self::Reaper => "reaper of orphans",
-            Self::Execution => "executable copies",
-            Self::CallFilter => "system call filter",
-            Self::NamedCalls => "named violations",
-            Self::FileRules => "file rules (Landlock)",
-            Self::Scopes => "signal scope (Landlock)",
-            Self::OwnUser => "a user per program",
-            Self::Namespaces => "namespaces",
-            Self::ControlGroup => "control group",
-        }
-    }
+layers! {
+    /// Executing a program never gains privileges.
+    NoNewPrivileges "no new privileges";
+    /// Resource limits, clocks and counters.
+    Limits "resource limits";
+    /// The supervisor adopts orphans, so that nothing outlives a run.
+    Reaper "reaper of orphans";
+    /// Copies of programs can be executed: not a wall, but nothing can be graded without.
+    Execution "executable copies";
+    /// The list of allowed system calls (seccomp).
+    CallFilter "system call filter";
+    /// Forbidden calls are named in the outcome.
+    NamedCalls "named violations";
+    /// Landlock's rules for files.
+    FileRules "file rules (Landlock)";
+    /// Landlock's rules for signals and abstract sockets.
+    Scopes "signal scope (Landlock)";
+    /// Another user for every running program; only root can do this.
+    OwnUser "a user per program";
+    /// Namespaces: a world without other processes, without network, and with few files.
+    Namespaces "namespaces";
+    /// A control group per run: the kernel's own counts, and an end for all at one word.
+    ControlGroup "control group";
 }
 
 /// The first version of Landlock that confines signals.

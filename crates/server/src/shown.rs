@@ -84,7 +84,8 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
         return None;
     }
     let scenes: Vec<&SceneInFile> = visible.iter().flat_map(|group| &group.scenes).collect();
-    let rank = |scene: &&SceneInFile| CODES.iter().position(|code| scene.code == *code);
+    // A code that a newer grader has is worse than all that are known here.
+    let rank = |scene: &&SceneInFile| CODES.iter().position(|code| scene.code == *code).unwrap_or(CODES.len());
     let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
     let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(nothing()) };
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
@@ -146,6 +147,22 @@ mod tests {
     fn file(groups: &str) -> GradeFile {
         let grade = format!(r#"{{"verdict": "x", "code": "RTE", "points": 45, "groups": [{groups}]}}"#);
         read(format!(r#"{{"schema": 4, "version": "1.0", "grades": [{grade}]}}"#).as_bytes()).expect("a file")
+    }
+
+    #[test]
+    fn codes_are_those_of_the_schema_in_the_order_of_severity() {
+        let schema: serde_json::Value =
+            serde_json::from_str(include_str!("../../../schemas/grade.schema.json")).expect("JSON");
+        assert_eq!(schema["$defs"]["SceneView"]["properties"]["code"]["enum"], serde_json::json!(CODES));
+    }
+
+    #[test]
+    fn an_unknown_code_is_not_better_than_a_known_one() {
+        let group = |scenes: &str| format!(r#"{{"visibility": "visible", "scenes": [{scenes}]}}"#);
+        let scene = |code: &str| format!(r#"{{"scene": "{code}", "code": "{code}", "verdict": "v"}}"#);
+        let hidden = r#"{"visibility": "hidden", "scenes": []}"#;
+        let groups = format!("{}, {hidden}", group(&[scene("XX"), scene("AC")].join(", ")));
+        assert_eq!(shown(&groups).expect("something is hidden").code, "XX");
     }
 
     #[test]

@@ -6,7 +6,7 @@
 mod read;
 mod sweep;
 
-pub use read::OpenArtefact;
+pub use read::OpenArtifact;
 
 use crate::secret::hex;
 use futures_util::TryStreamExt;

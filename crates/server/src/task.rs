@@ -37,43 +37,44 @@ pub struct Input {
     pub artifact: Artifact,
 }
 
-/// The kinds of submissions.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
-#[serde(rename_all = "lowercase")]
-pub enum Form {
+/// A row has a kind, its name in tables and messages, and what to hand in.
+macro_rules! forms {
+    ($($(#[$about:meta])+ $form:ident $name:literal $what:literal;)+) => {
+        /// The kinds of submissions.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+        #[serde(rename_all = "lowercase")]
+        pub enum Form { $($(#[$about])+ $form,)+ }
+
+        impl Form {
+            /// All of them.
+            pub const ALL: [Self; [$(Self::$form),+].len()] = [$(Self::$form),+];
+
+            /// Returns the name in tables and messages.
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$form => $name,)+ }
+            }
+
+            /// Returns the thing to hand in, in words.
+            pub fn describe(self) -> &'static str {
+                match self { $(Self::$form => $what,)+ }
+            }
+        }
+    };
+}
+
+forms! {
     /// A program, ready to run.
-    Program,
+    Program "program" "a program for Linux";
     /// An archive of sources that the suite says how to build.
-    Sources,
+    Sources "sources" "an archive of sources";
     /// An archive of traces, one for each scene.
-    Traces,
+    Traces "traces" "an archive of traces";
 }
 
 impl Form {
-    /// Every one.
-    pub const ALL: [Self; 3] = [Self::Program, Self::Sources, Self::Traces];
-
-    /// Returns the one of this name.
-    pub fn named(name: &str) -> Option<Self> {
+    /// Returns the form with this name.
+    pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|form| form.name() == name)
-    }
-
-    /// Returns the thing to hand in, in words.
-    pub fn describe(self) -> &'static str {
-        match self {
-            Self::Program => "a program for Linux",
-            Self::Sources => "an archive of sources",
-            Self::Traces => "an archive of traces",
-        }
-    }
-
-    /// Returns the end's name in tables and messages.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Program => "program",
-            Self::Sources => "sources",
-            Self::Traces => "traces",
-        }
     }
 }
 

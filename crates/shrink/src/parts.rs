@@ -2,23 +2,22 @@
 use fosssim_model::scene::{Force, Scene};
 use std::ops::Range;
 
-/// The kinds of parts, in the order in which they are removed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum PartKind {
-    /// Particles, with their edges, and the forces on both.
-    Bodies,
-    /// Edges, with their springs.
-    Edges,
-    /// Half-planes.
-    HalfPlanes,
-    /// Forces.
-    Forces,
+fosssim_num::closed_set! {
+    /// The kinds of parts, in the order in which they are removed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub(crate) enum PartKind {
+        /// Particles, with their edges, and the forces on both.
+        Bodies,
+        /// Edges, with their springs.
+        Edges,
+        /// Half-planes.
+        HalfPlanes,
+        /// Forces.
+        Forces,
+    }
 }
 
 impl PartKind {
-    /// All of them.
-    pub(crate) const ALL: [Self; 4] = [Self::Bodies, Self::Edges, Self::HalfPlanes, Self::Forces];
-
     /// Counts a scene's parts of this kind.
     pub(crate) const fn count(self, scene: &Scene) -> usize {
         match self {

@@ -184,6 +184,18 @@ fn functions_have_verbs_for_names() {
     assert!(vague.is_empty(), "these names are no verbs: {vague:#?}");
 }
 
+/// A list beside its enum lacks what somebody adds to the enum; `fosssim_num::closed_set` writes both.
+#[test]
+fn lists_of_all_variants_are_generated() {
+    let by_hand = |line: &str| {
+        let length = line.split_once("const ALL: [Self; ").map(|(_, rest)| rest);
+        length.is_some_and(|length| length.starts_with(|c: char| c.is_ascii_digit()))
+    };
+    let has_one = |source: &PathBuf| text(source).lines().any(by_hand);
+    let sources: Vec<PathBuf> = sources().into_iter().filter(has_one).collect();
+    assert!(sources.is_empty(), "lists by hand: {sources:#?}");
+}
+
 #[test]
 fn no_crate_without_a_reason_may_hold_unsafe_code() {
     let sources = sources();

@@ -2,25 +2,27 @@
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
-/// The meaning of a polynomial of a detection (collisions.md 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Subject {
-    /// Two particles overlap.
-    ParticleOverlap,
-    /// Two particles approach each other.
-    ParticleApproach,
-    /// A particle overlaps an edge's line.
-    EdgeOverlap,
-    /// The closest point lies behind the edge's first end.
-    AlphaLow,
-    /// The closest point lies before the edge's second end.
-    AlphaHigh,
-    /// A particle and an edge approach each other.
-    EdgeApproach,
-    /// A particle overlaps a half-plane's boundary.
-    HalfPlaneOverlap,
-    /// A particle and a half-plane approach each other.
-    HalfPlaneApproach,
+fosssim_num::closed_set! {
+    /// The meaning of a polynomial of a detection (collisions.md 2).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    pub enum Subject {
+        /// Two particles overlap.
+        ParticleOverlap = "particle-particle overlap",
+        /// Two particles approach each other.
+        ParticleApproach = "particle-particle approach",
+        /// A particle overlaps an edge's line.
+        EdgeOverlap = "particle-edge overlap",
+        /// The closest point lies behind the edge's first end.
+        AlphaLow = "particle-edge alpha > 0",
+        /// The closest point lies before the edge's second end.
+        AlphaHigh = "particle-edge alpha < 1",
+        /// A particle and an edge approach each other.
+        EdgeApproach = "particle-edge approach",
+        /// A particle overlaps a half-plane's boundary.
+        HalfPlaneOverlap = "particle-half-plane overlap",
+        /// A particle and a half-plane approach each other.
+        HalfPlaneApproach = "particle-half-plane approach",
+    }
 }
 
 impl Subject {
@@ -52,21 +54,6 @@ impl Subject {
             Self::ParticleOverlap | Self::AlphaLow | Self::AlphaHigh | Self::HalfPlaneOverlap => 2,
             Self::EdgeOverlap => 4,
             Self::EdgeApproach => 5,
-        }
-    }
-
-    /// Returns the polynomial's name in a message, such as `particle-edge alpha > 0`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ParticleOverlap => "particle-particle overlap",
-            Self::ParticleApproach => "particle-particle approach",
-            Self::EdgeOverlap => "particle-edge overlap",
-            Self::AlphaLow => "particle-edge alpha > 0",
-            Self::AlphaHigh => "particle-edge alpha < 1",
-            Self::EdgeApproach => "particle-edge approach",
-            Self::HalfPlaneOverlap => "particle-half-plane overlap",
-            Self::HalfPlaneApproach => "particle-half-plane approach",
         }
     }
 }

@@ -89,7 +89,7 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
 /// Returns the names of the built-in suites, each with its version, such as `t2m2@2`: the newest one of the default
 /// assignment first.
 pub fn names() -> impl Iterator<Item = String> {
-    Assignment::ALL.into_iter().flat_map(|assignment| {
+    Assignment::default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }

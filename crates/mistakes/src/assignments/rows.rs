@@ -8,26 +8,16 @@
 pub use fosssim_findings::explanation::Area;
 use fosssim_model::sim::PairKind;
 
-/// Whether a row is a mistake.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RowKind {
-    /// A mistake: the result is wrong.
-    Wrong,
-    /// No mistake: other arithmetic, the same mathematics.
-    Variant,
-    /// A program that harms itself or others.
-    Hostile,
-}
-
-impl RowKind {
-    /// Returns the area's name in listings.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Wrong => "wrong",
-            Self::Variant => "variant",
-            Self::Hostile => "hostile",
-        }
+fosssim_num::closed_set! {
+    /// Whether a row is a mistake.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum RowKind {
+        /// A mistake: the result is wrong.
+        Wrong = "wrong",
+        /// No mistake: other arithmetic, the same mathematics.
+        Variant = "variant",
+        /// A program that harms itself or others.
+        Hostile = "hostile",
     }
 }
 

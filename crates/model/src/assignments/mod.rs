@@ -24,32 +24,36 @@ pub use part::Part;
 
 use serde::{Deserialize, Serialize};
 
-/// An assignment of the course.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub enum Assignment {
-    /// Theme 1, Milestone 1: explicit Euler and simple gravity.
-    T1M1,
-    /// Theme 1, Milestone 2: symplectic Euler and all other forces.
-    T1M2,
-    /// Theme 1, Milestone 3: the implicit integrators.
-    T1M3,
-    /// Theme 2, Milestone 1: collisions at the end of a step, and the penalty force.
-    T2M1,
-    /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
-    T2M2,
-    /// Theme 2, Milestone 3: the contest, a penalty force between many bodies.
-    T2M3,
+fosssim_num::closed_set! {
+    /// An assignment of the course.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+    pub enum Assignment {
+        /// Theme 1, Milestone 1: explicit Euler and simple gravity.
+        T1M1,
+        /// Theme 1, Milestone 2: symplectic Euler and all other forces.
+        T1M2,
+        /// Theme 1, Milestone 3: the implicit integrators.
+        T1M3,
+        /// Theme 2, Milestone 1: collisions at the end of a step, and the penalty force.
+        T2M1,
+        /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
+        T2M2,
+        /// Theme 2, Milestone 3: the contest, a penalty force between many bodies.
+        T2M3,
+    }
 }
 
 impl Assignment {
-    /// All of them: the default one, then the others in the order of the course.
-    pub const ALL: [Self; 6] = [Self::T2M2, Self::T1M1, Self::T1M2, Self::T1M3, Self::T2M1, Self::T2M3];
-
-    /// All of them in the order of the course.
-    pub const COURSE: [Self; 6] = [Self::T1M1, Self::T1M2, Self::T1M3, Self::T2M1, Self::T2M2, Self::T2M3];
-
     /// The one that is meant where none is named.
     pub const DEFAULT: Self = Self::T2M2;
+
+    /// Returns all of them: the default one, then the others in the order of the course.
+    #[must_use]
+    pub fn default_first() -> [Self; Self::ALL.len()] {
+        let mut all = Self::ALL;
+        all.sort_by_key(|assignment| *assignment != Self::DEFAULT);
+        all
+    }
 
     /// Returns everything that it asks for.
     #[must_use]

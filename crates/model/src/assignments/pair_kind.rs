@@ -1,16 +1,18 @@
 //! The kinds of pairs that detections look at (collisions.md 1).
 use serde::{Deserialize, Serialize};
 
-/// The kind of a pair; the numbers are those of the trace format.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum PairKind {
-    /// Two particles (0).
-    ParticleParticle = 0,
-    /// A particle and an edge (1).
-    ParticleEdge = 1,
-    /// A particle and a half-plane (2).
-    ParticleHalfPlane = 2,
+fosssim_num::closed_set! {
+    /// The kind of a pair; the numbers are those of the trace format.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum PairKind {
+        /// Two particles (0).
+        ParticleParticle = "particle-particle",
+        /// A particle and an edge (1).
+        ParticleEdge = "particle-edge",
+        /// A particle and a half-plane (2).
+        ParticleHalfPlane = "particle-half-plane",
+    }
 }
 
 impl PairKind {
@@ -41,9 +43,6 @@ impl PairKind {
     /// The greatest number of polynomials that a detection call logs.
     pub const MOST_POLYNOMIALS: usize = 4;
 
-    /// All kinds, in the order in which a pass looks at a particle's pairs, and of the trace's numbers.
-    pub const ALL: [Self; 3] = [Self::ParticleParticle, Self::ParticleEdge, Self::ParticleHalfPlane];
-
     /// Returns the kind's place in [`PairKind::ALL`].
     #[inline]
     #[must_use]
@@ -55,16 +54,6 @@ impl PairKind {
     #[must_use]
     pub fn from_code(code: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
-    }
-
-    /// Returns the kind's name: `particle-edge`.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::ParticleParticle => "particle-particle",
-            Self::ParticleEdge => "particle-edge",
-            Self::ParticleHalfPlane => "particle-half-plane",
-        }
     }
 
     /// Returns the kind's name on command lines and in keys: `pe`.

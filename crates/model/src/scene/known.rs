@@ -96,7 +96,7 @@ impl Scene {
 
     /// Returns the assignments whose programs can run it, in the order of the course.
     pub fn assignments(&self) -> impl Iterator<Item = Assignment> {
-        Assignment::COURSE.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
+        Assignment::ALL.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
     }
 
     /// Returns the first assignment of the course whose programs can run it; where there is none, the one that brought

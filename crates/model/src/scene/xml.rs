@@ -251,7 +251,8 @@ fn duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
 }
 
 fn integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
-    let (integrator, time_step) = (fields.choice("type", &Integrator::NAMED), fields.scalar("dt"));
+    let (integrator, time_step) =
+        (fields.choice("type", &Integrator::ALL.map(|one| (one.name(), one))), fields.scalar("dt"));
     if time_step.is_some_and(|time_step| time_step <= 0.0) {
         fields.bad("dt", "the time step must be positive; the original makes no step");
     }

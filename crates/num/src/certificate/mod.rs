@@ -32,22 +32,19 @@ use super::{
     tolerances::{SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT},
 };
 
-/// Which level of the certificate has decided, cheapest first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// A polynomial that is nowhere positive by itself: empty, a constant, or `c z^m`.
-    Vanishing,
-    /// A line that is not positive within the step.
-    Line,
-    /// A parabola that is not positive within the step.
-    Parabola,
-    /// A polynomial of degree three or more whose Bernstein coefficients are all negative.
-    Bernstein,
-}
-
-impl Level {
-    /// All levels, in the order in which they are tried.
-    pub const ALL: [Self; 4] = [Self::Vanishing, Self::Line, Self::Parabola, Self::Bernstein];
+crate::closed_set! {
+    /// Which level of the certificate has decided, cheapest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Level {
+        /// A polynomial that is nowhere positive by itself: empty, a constant, or `c z^m`.
+        Vanishing,
+        /// A line that is not positive within the step.
+        Line,
+        /// A parabola that is not positive within the step.
+        Parabola,
+        /// A polynomial of degree three or more whose Bernstein coefficients are all negative.
+        Bernstein,
+    }
 }
 
 /// Returns whether [`first_time`](super::first_time::first_time) of these polynomials is certainly greater than 1 (or

@@ -65,22 +65,19 @@ pub enum Certainty {
     Borderline,
 }
 
-/// The level that decided, cheapest first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Level {
-    /// Signs of the coefficients, or the interval sum of their terms (L0).
-    Range,
-    /// The Bernstein coefficients on `[0, 1]` of one polynomial (L1).
-    Bernstein,
-    /// Subdivision of `[0, 1]` (L2).
-    Subdivision,
-    /// Integer arithmetic (L3).
-    Exact,
-}
-
-impl Level {
-    /// All levels, in the order in which they are tried.
-    pub const ALL: [Self; 4] = [Self::Range, Self::Bernstein, Self::Subdivision, Self::Exact];
+crate::closed_set! {
+    /// The level that decided, cheapest first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+    pub enum Level {
+        /// Signs of the coefficients, or the interval sum of their terms (L0).
+        Range,
+        /// The Bernstein coefficients on `[0, 1]` of one polynomial (L1).
+        Bernstein,
+        /// Subdivision of `[0, 1]` (L2).
+        Subdivision,
+        /// Integer arithmetic (L3).
+        Exact,
+    }
 }
 
 /// A decision, with its enclosure, margin and level.

@@ -71,7 +71,7 @@ impl Check<'_> {
     /// Returns the official verdict in words, such as `wrong answer`.
     #[must_use]
     pub fn verdict(&self) -> &'static str {
-        self.outcome.ruling(self.book()).text()
+        self.outcome.ruling(self.book()).name()
     }
 
     /// Returns whether the file is no trace at all, which is all that there is to say of it.
@@ -173,7 +173,7 @@ view! {
         official: Book = check.book(),
         /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not
         /// be read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.
-        #[schemars(extend("enum" = Ruling::ALL.map(Ruling::text)))]
+        #[schemars(extend("enum" = Ruling::ALL.map(Ruling::name)))]
         verdict: &'static str = check.verdict(),
         /// The reason for the verdict, in one line.
         summary: String = text::headline(check),

@@ -52,7 +52,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
         let mistakes: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
         let mut row = vec![
             safe(&grade.submission),
-            grade.verdict.text().to_owned(),
+            grade.verdict.name().to_owned(),
             grade.points.map(points).unwrap_or_default(),
             points(grade.max_points),
             grade.scenes().filter(|scene| scene.verdict.is_accepted()).count().to_string(),

@@ -100,7 +100,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         stdout_visibility: "hidden",
         tests,
         extra_data: Extra {
-            verdict: grade.verdict.text(),
+            verdict: grade.verdict.name(),
             suite: plain(&grade.suite),
             version: env!("CARGO_PKG_VERSION"),
             sandbox: grade.layers.clone(),

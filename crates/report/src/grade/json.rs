@@ -49,8 +49,8 @@ view! {
         /// The book that gives verdicts and points.
         official: Book = grade.rules.official(),
         /// The worst verdict of all scenes.
-        #[schemars(extend("enum" = Verdict::ALL.map(Verdict::text)))]
-        verdict: &'static str = grade.verdict.text(),
+        #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]
+        verdict: &'static str = grade.verdict.name(),
         /// The verdict as one word, such as `AC`.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = grade.verdict.code(),
@@ -147,8 +147,8 @@ view! {
         /// The readers who see it.
         visibility: Visibility = group.visibility,
         /// The worst verdict of its scenes.
-        #[schemars(extend("enum" = Verdict::ALL.map(Verdict::text)))]
-        verdict: &'static str = group.verdict.text(),
+        #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]
+        verdict: &'static str = group.verdict.name(),
         /// Points reached, those for speed included; null where a scene has none.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = group.points,
@@ -199,8 +199,8 @@ view! {
         /// The scene's name.
         scene: String = plain(&scene.scene),
         /// The scene's verdict.
-        #[schemars(extend("enum" = Verdict::ALL.map(Verdict::text)))]
-        verdict: &'static str = scene.verdict.text(),
+        #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]
+        verdict: &'static str = scene.verdict.name(),
         /// The verdict as one word, such as `AC`.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = scene.verdict.code(),

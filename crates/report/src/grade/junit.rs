@@ -46,7 +46,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 /// Returns a suite of one case: what is wrong with the submission itself, so that no scene was run.
 fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-    status.set_type(grade.verdict.text());
+    status.set_type(grade.verdict.name());
     status.set_message(plain(unfit));
     if let Some(build) = &grade.build {
         status.set_description(printed(&build.output));
@@ -66,7 +66,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
         verdict => {
             let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);
-            status.set_type(verdict.text());
+            status.set_type(verdict.name());
             status.set_message(plain(&words::summary(scene)));
             let mut description = words::details(scene);
             description.extend(explain::lines(&scene.settled));

@@ -54,7 +54,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         .map(|(group, scene)| Test {
             name: one_line(&scene.scene),
             group: one_line(&group.name),
-            description: scene.verdict.text().to_owned(),
+            description: scene.verdict.name().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
             message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summary(scene)) },
@@ -90,7 +90,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
             // Groups that students do not see must not show through.
-            verdict if shown.groups.len() == grade.groups.len() => verdict.text().to_owned(),
+            verdict if shown.groups.len() == grade.groups.len() => verdict.name().to_owned(),
             _ => format!(
                 "{} on the tests shown here ({}); the grade has others, too",
                 shown.verdict,
@@ -111,7 +111,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             .iter()
             .map(|group| Group {
                 name: one_line(&group.name),
-                verdict: group.verdict.text().to_owned(),
+                verdict: group.verdict.name().to_owned(),
                 points: group.points,
                 max_points: group.max_points,
             })

@@ -159,7 +159,7 @@ impl ClassPage<'_> {
             state(grade),
             made.join(" "),
             self.link(grade),
-            grade.verdict.text(),
+            grade.verdict.name(),
             sort(grade.points),
             reached(grade.points),
             points(grade.max_points),

@@ -64,7 +64,7 @@ impl GradePage<'_> {
         }
         // The viewer is most of a page without cards.
         let script = if has_scenes && !told.is_empty() { script() } else { "" };
-        document(&format!("{}: {}", grade.submission, grade.verdict.text()), &body, script)
+        document(&format!("{}: {}", grade.submission, grade.verdict.name()), &body, script)
     }
 
     /// Returns the scenes that have something to tell, the most telling one first and the others in their order.
@@ -93,7 +93,7 @@ impl GradePage<'_> {
             out,
             "<h1>{}: <span class=\"chip {look}\">{}</span> {}</h1>\n<p class=\"names\">suite {}, {}</p>",
             text(&one_line(&grade.submission)),
-            grade.verdict.text(),
+            grade.verdict.name(),
             text(&reached),
             text(&one_line(&grade.suite)),
             text(&books(grade)),
@@ -209,7 +209,7 @@ fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
             out,
             "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"num\">{} of {}</td></tr>",
             text(&one_line(&scene.scene)),
-            scene.verdict.text(),
+            scene.verdict.name(),
             reached(scene.points),
             points(scene.max_points)
         );
@@ -257,7 +257,7 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
                  accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
             text(&one_line(&group.name)),
             if group.verdict.is_accepted() { "good" } else { "bad" },
-            group.verdict.text(),
+            group.verdict.name(),
             reached(group.points),
             points(group.max_points),
             if group.extra { " extra" } else { "" },
@@ -280,7 +280,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
          <span class=\"hint\">{} of {} points. {}</span></summary>\n",
         text(&scene.scene),
         if open { " open" } else { "" },
-        scene.verdict.text(),
+        scene.verdict.name(),
         text(&one_line(&scene.scene)),
         reached(scene.points),
         points(scene.max_points),

@@ -7,7 +7,7 @@ use crate::{
     db::{DbError, Transaction},
     problem::Problem,
     shown::{self, ShownGrade},
-    store::{Artifact, Digest, OpenArtefact},
+    store::{Artifact, Digest, OpenArtifact},
     task::OutputFile,
     values,
     worker::{PUBLISHED_PAGE, STAFF_PAGE},
@@ -191,7 +191,7 @@ impl Member {
     ///
     /// # Errors
     /// When the store fails.
-    pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtefact, Problem> {
+    pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtifact, Problem> {
         Ok(self.app.0.store.open(&artifact.digest).await?)
     }
 

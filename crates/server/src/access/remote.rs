@@ -4,7 +4,7 @@ use super::App;
 use crate::{
     problem::{Problem, ensure},
     queue::{Lease, Progress},
-    store::{Artifact, Digest, OpenArtefact},
+    store::{Artifact, Digest, OpenArtifact},
     task::{Outcome, Suite, Task},
     values,
     wire::{ClaimedJob, Manners},
@@ -179,7 +179,7 @@ impl Remote {
     ///
     /// # Errors
     /// When the job is not its own (any more), or the artifact is not the job's.
-    pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtefact, Problem> {
+    pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtifact, Problem> {
         let task = self.held(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
         ensure(task.submission.artifact.digest == *digest || suite, Problem::not_found("artifact of this job"))?;

@@ -219,7 +219,7 @@ impl Settings {
         if let Some(archive) = &self.suite_archive {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
-        if self.forms.is_empty() || self.forms.iter().any(|form| Form::named(form).is_none()) {
+        if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
             return Err(Problem::invalid("forms is a list of program, sources and traces"));
         }
         ensure(is_file_name(&self.program), Problem::invalid("program is a plain file name"))?;

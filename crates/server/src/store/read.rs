@@ -9,7 +9,7 @@ use std::path::Path;
 use tokio::io::AsyncWriteExt;
 
 /// An artifact that is being read.
-pub struct OpenArtefact {
+pub struct OpenArtifact {
     /// How large all of it is.
     pub size: u64,
     /// The artifact's bytes.
@@ -23,7 +23,7 @@ impl Store {
     ///
     /// # Errors
     /// When there is none, it is damaged, or the store fails.
-    pub async fn open(&self, digest: &Digest) -> Result<OpenArtefact, StoreError> {
+    pub async fn open(&self, digest: &Digest) -> Result<OpenArtifact, StoreError> {
         let mut found = self.objects.get(&digest.key(KEPT)).await;
         // A file that is put aside may be named since, and comes back.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
@@ -38,7 +38,7 @@ impl Store {
         let mut pieces = verified(pieces, digest.clone());
         let first = pieces.next().await.transpose()?;
         let pieces = futures_util::stream::iter(first.map(Ok)).chain(pieces).boxed();
-        Ok(OpenArtefact { size, pieces })
+        Ok(OpenArtifact { size, pieces })
     }
 
     /// Writes an artifact into a new file.

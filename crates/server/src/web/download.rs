@@ -2,7 +2,7 @@
 use crate::{
     access::{Member, Transfer},
     problem::Problem,
-    store::{Artifact, OpenArtefact},
+    store::{Artifact, OpenArtifact},
 };
 use axum::{
     body::Body,
@@ -27,7 +27,7 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
 }
 
 /// Returns all of an artifact.
-pub(super) fn whole(opened: OpenArtefact, transfer: Option<Transfer>) -> Response {
+pub(super) fn whole(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
         // The answer breaks off; anybody who gets it sees that bytes are missing.
         tracing::error!(%error, "an answer broke off");

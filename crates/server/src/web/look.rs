@@ -29,7 +29,7 @@ pub(super) async fn examine(
     settings: &Settings,
 ) -> Result<Form, Problem> {
     let wrong = || Problem::invalid("form is program, sources or traces");
-    let form = said.map(|name| Form::named(name).ok_or_else(wrong)).transpose()?;
+    let form = said.map(|name| Form::from_name(name).ok_or_else(wrong)).transpose()?;
     let mut start = Vec::new();
     std::fs::File::open(file)?.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
     ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;

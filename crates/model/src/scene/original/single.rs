@@ -75,7 +75,7 @@ impl<'e> Singles<'e> {
         let Some(written) = element.attribute("type") else {
             return refuse("No integrator 'type' attribute specified. Exiting.");
         };
-        let Some((_, integrator)) = Integrator::NAMED.into_iter().find(|(name, _)| name.as_bytes() == written) else {
+        let Some(integrator) = Integrator::ALL.into_iter().find(|one| one.name().as_bytes() == written) else {
             return refuse("Invalid integrator 'type' attribute specified. Exiting.");
         };
         Ok((integrator, scalar(element, "integrator", "dt", "numeric")?))

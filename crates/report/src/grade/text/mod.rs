@@ -92,7 +92,7 @@ impl Text<'_> {
     /// Returns the submission, its verdict and its points.
     fn verdict(&self, grade: &Grade) -> String {
         let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
-        let (name, verdict) = (one_line(&grade.submission), grade.verdict.text());
+        let (name, verdict) = (one_line(&grade.submission), grade.verdict.name());
         let reached = match grade.points {
             Some(reached) => score(reached, grade.max_points) + &extra(grade),
             None => no_points(grade).unwrap_or_default(),

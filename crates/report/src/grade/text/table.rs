@@ -23,7 +23,7 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     };
     let name = of("submission", false, &|grade| shortened(&one_line(&grade.submission)));
     let score = of("points", true, &|grade| reached(grade.points));
-    let verdict = of("verdict", false, &|grade| grade.verdict.text().to_owned());
+    let verdict = of("verdict", false, &|grade| grade.verdict.name().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
     let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
         of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
