@@ -1,5 +1,5 @@
 //! The fair rules over every known mistake, every correct variant, and the corpus.
-use super::corpus;
+use super::{corpus, judging};
 use fosssim_oracle::{
     judge::{
         FindingKind, Overall,
@@ -67,29 +67,60 @@ fn no_mistake_passes_the_fair_rules() {
     assert!(missed.is_empty(), "{missed:?}");
 }
 
+/// Variants whose own roundings decide whether something touches exactly at the end of a step. In scenes that ask just
+/// that, from numbers with few digits, what follows may be another motion.
+const ROUNDING: [&str; 3] = ["normalized-norm", "through-bernstein", "frame-rotated"];
+
+/// Scale and arithmetic change the logged bits, never what happens, and the fair rules accept them.
 /// `scale-1e-6` makes the course's library drop real coefficients; where that changes a decision the program really
 /// does something else, and the report says that this is why.
 #[test]
-fn every_correct_variant_passes_the_fair_rules() {
-    let scenes = assets();
-    let cases: Vec<(&Row, &(String, Scene))> = rows(student::RowKind::Variant)
-        .into_iter()
-        .flat_map(|row| scenes.iter().map(move |scene| (row, scene)))
+fn every_correct_variant_moves_as_the_correct_sample_and_passes_the_fair_rules() {
+    let scenes: Vec<(String, Scene, Vec<f64>)> = assets()
+        .into_par_iter()
+        .map(|(name, scene)| {
+            let states = states(&scene, &simulated(&scene, None).expect("the correct program comes to an end"));
+            (name, scene, states)
+        })
         .collect();
+    let rows = rows(student::RowKind::Variant);
+    let cases: Vec<_> = rows.iter().flat_map(|row| scenes.iter().map(move |scene| (row, scene))).collect();
     assert!(cases.len() > 2000);
     let refused: Vec<String> = cases
         .into_par_iter()
-        .filter_map(|(row, (name, scene))| {
+        .enumerate()
+        .filter_map(|(index, (row, (name, scene, correct)))| {
             let trace = simulated(scene, Some(row)).expect("correct variants come to an end");
+            let moved = states(scene, &trace);
+            let close = moved.len() == correct.len()
+                && moved.iter().zip(correct).all(|(ours, right)| (ours - right).abs() < 1e-9);
+            // Past the end of a tiny edge the vector to the end is another one, by some 1e-9.
+            let is_excused = name.contains("tiny-edge") && row.id == "pe-contact-clamped"
+                || name.contains("exactly") && ROUNDING.contains(&row.id);
             let fair = judged(scene, &trace, 1).1;
-            let first = fair.findings.first_divergence.map(|first| first.to_string());
+            if index % 4 == 0 {
+                judging::compare(&format!("{} on {name}", row.id), scene, &trace);
+            }
             let loses = row.id == "scale-1e-6"
                 && fair.findings.counts.get(FindingKind::TrimmedDecision) == fair.findings.counts.total();
-            let is_refused = fair.verdict != FairVerdict::Accepted && !loses;
-            is_refused.then(|| format!("{} on {name}: {first:?}", row.id))
+            let passes = fair.verdict == FairVerdict::Accepted || loses;
+            let moves_alike = close || is_excused || row.id == "scale-1e-6";
+            let first = fair.findings.first_divergence.map(|first| first.to_string());
+            (!passes || !moves_alike).then(|| format!("{} on {name}: {first:?}", row.id))
         })
         .collect();
     assert!(refused.is_empty(), "{refused:#?}");
+}
+
+/// All positions and velocities of a trace, with everything else left out.
+fn states(scene: &Scene, trace: &[u8]) -> Vec<f64> {
+    let mut reader = Reader::of_slice(trace, Layout::for_scene(scene));
+    let (mut frame, mut states) = (Frame::default(), Vec::new());
+    while reader.next(&mut frame).expect("a whole trace") {
+        states.extend_from_slice(&frame.state.positions);
+        states.extend_from_slice(&frame.state.velocities);
+    }
+    states
 }
 
 /// Two balls fall side by side: their relative motion is round-off, which the course's library drops of the
