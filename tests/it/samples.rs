@@ -174,12 +174,12 @@ fn documents_say_how_many_mistakes_and_variants_there_are() {
     let states = rows.iter().filter(|row| is_of_states(row)).count();
     let (wrong, variants) = (count("wrong") - states, count("variant"));
     for (document, sentences) in [
-        ("README.md", [format!("Of {wrong} documented mistakes"), format!("of {variants} correct variants")]),
+        ("README.md", vec![format!("Of {wrong} documented mistakes"), format!("of {variants} correct variants")]),
         (
             "docs/rules/measurements.md",
-            [format!("all {wrong} mistakes and"), format!("and {variants} correct variants")],
+            vec![format!("all {wrong} mistakes and"), format!("and {variants} correct variants")],
         ),
-        ("docs/rules/mistakes.md", [format!("{states} mistakes of forces")]),
+        ("docs/rules/mistakes.md", vec![format!("{states} mistakes of forces")]),
     ] {
         let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(document)).expect(document);
         for sentence in sentences {
