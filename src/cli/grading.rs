@@ -79,6 +79,10 @@ pub(super) struct GradeArguments {
     /// `full` may give a formula away.
     #[arg(long, value_parser = hints(), value_name = "LEVEL")]
     pub(super) hints: Option<Hints>,
+    /// Make the smallest scene on which a program is still wrong, for up to four causes of each submission, with two
+    /// seconds of processor time for each.
+    #[arg(long)]
+    pub(super) smallest: bool,
     /// Keep the traces of scenes that are not accepted, in the output folder.
     #[arg(long)]
     pub(super) keep_traces: bool,
@@ -133,7 +137,7 @@ pub(super) struct GradeArguments {
     pub(super) timings: bool,
     /// Judge traces that exist already, and run no program. Every path is a folder with Group/name.bin, or name.bin,
     /// for each scene.
-    #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single"])]
+    #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single", "smallest"])]
     pub(super) traces: bool,
     /// Run programs even if required layers of the sandbox are missing. The other layers stay up, and every report
     /// names the missing ones.

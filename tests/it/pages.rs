@@ -201,6 +201,42 @@ fn pages_to_hand_out_hold_no_hidden_group() {
     assert!(published.contains("Veiled") && published.contains(" of 3 points"), "{published}");
 }
 
+/// A smallest scene is made from a scene that students see or is not shown to them, and hints hold for it.
+#[test]
+fn smallest_scenes_tell_students_what_their_group_does() {
+    let Some(workspace) = grading::workspace() else { return };
+    let suite = "schema = 1\nname = \"Veils\"\nshow_output = true\n\
+        [[group]]\nname = \"Shown\"\nhints = \"what\"\nscenes = [\"asset:ContinuousTimeTests/head-on-equal-masses\"]\n\
+        [[group]]\nname = \"Veiled\"\nvisibility = \"hidden\"\n\
+        scenes = [\"asset:ContinuousTimeTests/spinning-edge-sweeps-balls\"]\n";
+    workspace.write("veils.toml", suite);
+    let submissions = grading::submit(&workspace, &["pp-contact-reversed", "pe-linear-one-ab"]);
+    let words = ["grade", &submissions[0], &submissions[1], "--suite", "veils.toml", "--smallest", "--output", "class"];
+    let run = workspace.run(words);
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    let tells = |file: &str| {
+        let page = text(&workspace, file);
+        ["The smallest scene: ", "&lt;particle ", "By hand"].map(|words| body(&page).contains(words))
+    };
+    let [seen, unseen] = ["pp-contact-reversed", "pe-linear-one-ab"].map(|name| format!("fosssim-sample.{name}.html"));
+    for page in [&seen, &unseen] {
+        assert_eq!(tells(&format!("class/reports/{page}")), [true; 3]);
+    }
+    assert_eq!(tells(&format!("class/students/{seen}")), [true, true, false]);
+    assert_eq!(tells(&format!("class/students/{unseen}")), [false; 3], "it comes from a hidden scene");
+    let lines = text(&workspace, "class/grades.jsonl");
+    assert_eq!(lines.lines().filter(|line| line.contains("\"smallest\":[{\"origin\":")).count(), 2);
+    assert!(lines.contains("\"worth\":[1.0]"), "{lines:.2000}");
+    // Where what programs choose is withheld, there is none for students.
+    workspace.write("veils.toml", text(&workspace, "veils.toml").replace("show_output = true", ""));
+    let run = workspace.run([&words[..], &["--fresh"]].concat());
+    assert_eq!(run.code, Some(1), "{}", run.shown());
+    assert_eq!(
+        (tells(&format!("class/students/{seen}"))[0], tells(&format!("class/reports/{seen}"))[0]),
+        (false, true)
+    );
+}
+
 /// Staff sees the numbers of every scene; students see what the suite says, group by group, and the assignment's own
 /// `--hints` change nothing for staff.
 #[test]

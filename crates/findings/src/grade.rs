@@ -5,6 +5,7 @@ use super::{
     explanation::Explanation,
     located::LocatedFailure,
     result::{BuildEnd, SceneResult},
+    smallest::SmallestScene,
     speed::{SpeedGrade, SpeedSource},
     verdict::Verdict,
 };
@@ -72,6 +73,9 @@ pub struct Grade {
     /// The earlier grade with which this one is compared.
     #[serde(default)]
     pub before: Option<EarlierGrade>,
+    /// The smallest scene for each cause, where these were asked for.
+    #[serde(default)]
+    pub smallest: Vec<SmallestScene>,
 }
 
 impl Grade {
@@ -245,6 +249,9 @@ pub struct GroupGrade {
     /// Whether its points are extra: they count neither in the sum nor in the maximum of the grade.
     #[serde(default)]
     pub extra: bool,
+    /// Whether it gives points only where all of its scenes are accepted.
+    #[serde(default)]
+    pub all_or_nothing: bool,
     /// Points for speed, where the suite gives any.
     pub speed: Option<SpeedGrade>,
     /// The worst verdict of its scenes.

@@ -54,14 +54,20 @@ impl Hints {
     }
 
     fn disclose_book(self, book: DisclosedBook) -> DisclosedBook {
-        let cut = |finding: DisclosedFinding| match finding {
-            DisclosedFinding::Full(finding) => self.finding(&finding),
-            DisclosedFinding::Place { .. } => Some(finding),
-        };
+        let cut = |finding: DisclosedFinding| self.cut(finding);
         DisclosedBook {
             first_divergence: book.first_divergence.and_then(cut),
             examples: book.examples.into_iter().filter_map(cut).collect(),
             ..book
+        }
+    }
+
+    /// Returns the part that may be told of what is told at another level.
+    #[must_use]
+    pub const fn cut(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
+        match finding {
+            DisclosedFinding::Full(finding) => self.finding(&finding),
+            DisclosedFinding::Place { .. } => Some(finding),
         }
     }
 

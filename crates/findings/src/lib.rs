@@ -34,6 +34,7 @@ pub mod outcome;
 pub mod parity;
 pub mod result;
 pub mod rules;
+pub mod smallest;
 pub mod speed;
 pub mod timing;
 pub mod verdict;

@@ -72,14 +72,7 @@ impl Cards<'_> {
     }
 
     fn keep_one(&self, judged: &JudgedTrace<'_>) -> io::Result<Option<String>> {
-        let Some(card) = (self.draw)(judged) else { return Ok(None) };
-        let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
-        let path = file(self.folder, &name);
-        if !path.is_file() {
-            // By rename: another job may draw the same card now.
-            path.write(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
-        }
-        Ok(Some(name))
+        (self.draw)(judged).map(|card| store(self.folder, &card)).transpose()
     }
 
     /// Returns whether a card of an earlier result is missing; `students` is how much they are told of the scene.
@@ -90,6 +83,20 @@ impl Cards<'_> {
             is_missing(card) || shows_students && result.card_for_students.as_ref().is_none_or(is_missing)
         })
     }
+}
+
+/// Keeps a card in a folder; returns its name.
+///
+/// # Errors
+/// When it can't be written.
+pub fn store(folder: &Place, card: &str) -> io::Result<String> {
+    let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
+    let path = file(folder, &name);
+    if !path.is_file() {
+        // By rename: another job may draw the same card now.
+        path.write(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
+    }
+    Ok(name)
 }
 
 /// Reads a card that has been kept in a folder.

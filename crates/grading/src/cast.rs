@@ -168,6 +168,7 @@ impl Stage {
             faults,
             traces: None,
             cards: None,
+            smallest: None,
             finish: None,
             timings: None,
             reference,

@@ -18,6 +18,7 @@ use super::{
     recipe::Recipe,
     result::{Failure, NotRunReason, Reason, SceneResult},
     results::{KeepError, Results},
+    smallest::DescribeSmallest,
     staging::{self, StagedProgram},
     task::SceneTask,
     temporary::Folders,
@@ -88,6 +89,8 @@ pub struct Grader<'a> {
     pub traces: Option<&'a TraceFile<'a>>,
     /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
     pub cards: Option<Cards<'a>>,
+    /// Says what is to be said of smallest scenes, when somebody wants them.
+    pub smallest: Option<&'a DescribeSmallest<'a>>,
     /// Does what a grade needs, on the job that has drawn it.
     pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
     /// Adds up the processor time of all runs, when somebody asks where it goes.

@@ -37,6 +37,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         visibility: marking.visibility,
         hints: marking.hints,
         extra: marking.extra,
+        all_or_nothing: marking.credit == Credit::All,
         points: with_speed(points, speed.as_ref()),
         max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
         speed,
@@ -75,6 +76,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         program: None,
         same_program: Vec::new(),
         before: None,
+        smallest: Vec::new(),
     }
 }
 

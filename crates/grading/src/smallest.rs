@@ -1,6 +1,12 @@
 //! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
-use super::{execute::Runner, located::FailureKind, task::SceneTask};
+use super::{
+    config::{Hints, RunLimits},
+    execute::Runner,
+    located::FailureKind,
+    task::SceneTask,
+};
 use fosssim_evidence::{KeptPart, examine};
+pub use fosssim_findings::smallest::{HandComputation, SmallestScene};
 use fosssim_judge::{kept::LONGEST, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_model::{
@@ -24,6 +30,22 @@ const MOST_SCENES: usize = 4;
 const MOST_BODIES: usize = 400;
 /// Causes without a name of which a scene is made.
 const MOST_UNNAMED: usize = 2;
+
+/// The limits where the smallest scenes are only the end of a report.
+pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), jobs: 1 };
+
+/// The time on the processor and on the clock of a run.
+const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+
+/// Returns limits with no more time than a program needs on a small scene. What it has recorded at its end is read all
+/// the same.
+#[must_use]
+pub fn impatient(limits: &RunLimits) -> RunLimits {
+    RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
+}
+
+/// Says all that is to be said of a smallest scene, where its students are told this much.
+pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene, Hints) -> SmallestScene + Sync + 'a;
 
 /// The most that may be spent on one cause.
 #[derive(Debug, Clone, Copy)]
@@ -49,7 +71,7 @@ pub struct WrongScenes<'a> {
 
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
-pub struct SmallestScene {
+pub struct ShrunkScene {
     /// Why the program is wrong on it.
     pub reason: WrongReason,
     /// The scene that it is made of.
@@ -137,13 +159,15 @@ impl Shrinker<'_> {
         &self,
         cause: &WrongScenes<'_>,
         progress: &mut dyn FnMut(&SceneSize),
-    ) -> Result<Option<SmallestScene>, String> {
+    ) -> Result<Option<ShrunkScene>, String> {
         let mut tasks = cause.scenes.clone();
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let spent = AtomicU64::new(0);
-        let begun = processor_time(TimeOf::Process);
-        let time = || Duration::from_nanos(spent.load(Ordering::Relaxed)) + (processor_time(TimeOf::Process) - begun);
+        // Where other threads grade, theirs does not count.
+        let of = if self.limits.jobs == 1 { TimeOf::Thread } else { TimeOf::Process };
+        let begun = processor_time(of);
+        let time = || Duration::from_nanos(spent.load(Ordering::Relaxed)) + processor_time(of).saturating_sub(begun);
         for task in tasks.into_iter().take(MOST_SCENES) {
             if time() >= self.limits.time {
                 break;
@@ -160,7 +184,7 @@ impl Shrinker<'_> {
             let seen = self.observe(&small.scene, &spent)?;
             // A program that does another thing each time shows nothing.
             if reason.holds(&small.scene, &seen) {
-                return Ok(Some(SmallestScene { reason, origin: task.name.clone(), small, seen, time: time() }));
+                return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen, time: time() }));
             }
         }
         Ok(None)

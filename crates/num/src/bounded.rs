@@ -1,10 +1,10 @@
 //! Numbers that carry a bound on their rounding error: running error analysis.
 //!
 //! A [`BoundedValue`] is a computed value with a count `units`: whatever order a correct program evaluates the same
-//! formula in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
-//! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3),
-//! with the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and the
-//! bound also covers other orders of summation. Nothing of this reaches a trace.
+//! formula in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those
+//! of Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section
+//! 3.3), with the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and
+//! the bound also covers other orders of summation. Nothing of this reaches a trace.
 use super::{
     lanes::{Modulus, Number, Plane},
     vector::Vec2,

@@ -3,7 +3,8 @@ use fosssim_judge::WithoutResult;
 use fosssim_model::sim::{Pair, StepError};
 
 /// Returns a pair as `detect --pair` takes it.
-pub(crate) fn pair_key(pair: Pair) -> String {
+#[must_use]
+pub fn pair_key(pair: Pair) -> String {
     format!("{}:{},{}", pair.kind.short(), pair.first, pair.second)
 }
 

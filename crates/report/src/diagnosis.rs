@@ -3,13 +3,13 @@ use super::{
     case::Case,
     explain::{ExplanationView, lines},
     number::counted,
-    smallest::{SmallestReport, SmallestView},
+    smallest::{self, SmallestView},
     style::{Look, Style},
     view::{FindingView, document, view},
     words::{first_divergence, located},
 };
 use crate::foreign::one_line;
-use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure};
+use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure, smallest::SmallestScene};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
@@ -26,7 +26,7 @@ pub struct Diagnosis {
     /// The common properties of the scenes in which the program crashes or runs into a limit.
     pub located: Option<LocatedFailure>,
     /// The smallest scene for each cause, where these were looked for.
-    pub smallest: Vec<SmallestReport>,
+    pub smallest: Vec<SmallestScene>,
 }
 
 impl Diagnosis {
@@ -39,7 +39,8 @@ impl Diagnosis {
     /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
-        let smallest = self.smallest.iter().map(|one| format!("\n{}", one.text(style))).collect::<String>();
+        let smallest =
+            self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, None, style))).collect::<String>();
         if let [case] = &self.cases[..] {
             return alone(case, style) + &smallest;
         }

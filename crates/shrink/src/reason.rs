@@ -51,20 +51,21 @@ impl WrongReason {
         if FailureKind::from_end(&seen.ended).is_some() {
             return Some(Self::Ended(seen.ended.clone()));
         }
-        let finding = match findings(scene, &seen.trace)? {
+        let (finding, is_plain) = match findings(scene, &seen.trace)? {
             TraceFault::Broken => return Some(Self::BrokenTrace),
-            TraceFault::Wrong(detail) => Self::Finding(detail.kind, detail.pair),
+            TraceFault::Wrong(first) => (Self::Finding(first.kind, first.pair), first.is_plain),
         };
         let explanations = diagnose::explain(scene, &seen.trace);
         if explanations.iter().any(Explanation::is_not_finite) {
             return Some(Self::NotFinite);
         }
         let is_told = |one: &&Explanation| one.is_vote() && (one.is_complete() || one.is_of_stage());
-        Some(explanations.iter().find(is_told).map_or(finding, |one| Self::Mistake(Box::new(one.clone()))))
+        let told = explanations.iter().find(is_told).map(|one| Self::Mistake(Box::new(one.clone())));
+        told.or_else(|| is_plain.then_some(finding))
     }
 
-    /// Returns whether a program is wrong on a scene for this reason, and plainly: not by round-off, and not by a
-    /// decision that round-off may flip.
+    /// Returns whether a program is wrong on a scene for this reason, and plainly: not by round-off, unless that is the
+    /// named mistake, and not by a decision that round-off may flip.
     #[must_use]
     pub fn holds(&self, scene: &Scene, seen: &Observation) -> bool {
         match (self, FailureKind::from_end(&seen.ended)) {
@@ -76,7 +77,7 @@ impl WrongReason {
                 (_, None | Some(TraceFault::Broken)) => false,
                 (Self::Mistake(mistake), Some(_)) => is_named_in(mistake, &diagnose::explain(scene, &seen.trace)),
                 (Self::Finding(kind, pair), Some(TraceFault::Wrong(first))) => {
-                    (first.kind, first.pair) == (*kind, *pair)
+                    first.is_plain && (first.kind, first.pair) == (*kind, *pair)
                 }
                 (_, Some(_)) => diagnose::explain(scene, &seen.trace).iter().any(Explanation::is_not_finite),
             },
@@ -105,9 +106,11 @@ enum TraceFault {
 struct FirstFinding {
     kind: FindingKind,
     pair: Option<PairKind>,
+    /// Whether it is about more than round-off.
+    is_plain: bool,
 }
 
-/// Returns what is plainly wrong with a trace.
+/// Returns what is wrong with a trace, unless round-off may decide that.
 fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let outcome = judge(scene, trace, &options, &mut ());
@@ -117,8 +120,8 @@ fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
     }
     let first = fair.findings.first_divergence.filter(|_| fair.verdict == FairVerdict::Rejected)?;
     let pair = first.detail.pair().map(|pair| pair.kind);
-    (fair.borderline == 0 && is_plain(&first.detail))
-        .then_some(TraceFault::Wrong(FirstFinding { kind: first.kind(), pair }))
+    let first = FirstFinding { kind: first.kind(), pair, is_plain: is_plain(&first.detail) };
+    (fair.borderline == 0).then_some(TraceFault::Wrong(first))
 }
 
 /// Returns whether a finding is about more than round-off.

@@ -61,7 +61,7 @@ fn explain_program(
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
     let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
     if let Some(explained) = &mut explained {
-        shrink::add_smallest(&program, explained, shrink::QUICK, None, drawing(arguments))?;
+        shrink::add_smallest(&program, explained, shrink::AT_THE_END, None, drawing(arguments))?;
     }
     let is_traceless = |(_, steps): &(_, u32)| *steps == 0;
     if suite.is_some() && explained.as_ref().is_some_and(|all| all.ends.iter().all(is_traceless)) {

@@ -4,10 +4,12 @@ use super::{
     compare,
     display::{Counter, LiveDisplay},
     ending::{HARDEST, exit_code, file_name, file_of_scene, shown, text},
+    host::backend,
     last_run::LastRun,
     pages::{self, Pages},
     results::{Report, Results, refuse_several, reports, wanted_pages},
     shard::Sharding,
+    shrink,
     submissions::{FoundSubmissions, Search},
     timings, traces,
 };
@@ -29,16 +31,17 @@ use crate::{
         page::Audience,
         words,
     },
-    sandbox::{Backend, Supervisor},
+    sandbox::Backend,
     suite::{
         Cancellation, EarlierGrade, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
         batch::{self, BatchResult},
         cards::JudgedTrace,
-        config::Visibility,
+        config::{Hints, Visibility},
         grader::Options,
         guarded,
         plan::{self, Plan},
         results::FolderResults,
+        smallest::ShrunkScene,
         timings::Timings,
     },
 };
@@ -139,18 +142,6 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
-/// Returns the sandbox, or a refusal that says what is missing.
-pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
-    let supervisor = Supervisor::this_program();
-    if unsafe_no_sandbox {
-        return Backend::unsandboxed(supervisor).context("programs can't be run on this machine, not even unsafely");
-    }
-    Backend::best(supervisor).context(
-        "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do, \
-         --unsafe-no-sandbox runs them all the same",
-    )
-}
-
 /// Everything that stays the same between two gradings of `--watch`.
 struct GradingSession<'a> {
     arguments: &'a Arguments,
@@ -241,6 +232,10 @@ impl GradingSession<'_> {
             pages.forget();
         }
         let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
+        let program = format!("./{}", self.arguments.program);
+        let smallest = |small: &ShrunkScene, students: Hints| {
+            shrink::graded(small, &program, [self.plan.staff_hints, students], self.pages.as_ref())
+        };
         let log_error = OnceLock::new();
         let finish = |grade: &Grade| {
             if let (Some(folder), None) = (&self.folder, log_error.get())
@@ -260,6 +255,7 @@ impl GradingSession<'_> {
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
+            smallest: if self.arguments.smallest { Some(&smallest) } else { None },
             finish: Some(&finish),
             timings: self.arguments.timings.then_some(self.times),
             reference: reference.as_deref(),

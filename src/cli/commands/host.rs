@@ -1,8 +1,5 @@
 //! `doctor`, `selftest` and `demo`: what this machine can do.
-use super::{
-    grade::backend,
-    pages::{self, Pages},
-};
+use super::pages::{self, Pages};
 use crate::{
     cli::{
         console, exit,
@@ -13,7 +10,7 @@ use crate::{
     files::{self, Place},
     pin,
     report::{formats::Format, number::counted, page::Audience},
-    sandbox::{self, selftest},
+    sandbox::{self, Backend, Supervisor, selftest},
     student,
     suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, plan},
 };
@@ -102,6 +99,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             faults: &Place::new("", "fosssim-faults"),
             traces: None,
             cards: Some(pages.drawing(&draw)),
+            smallest: None,
             finish: None,
             timings: None,
             reference: None,
@@ -179,4 +177,16 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let _ = writeln!(text, "\n{held} held, {broken} not held, {untested} not tested here");
     console::report(&text)?;
     Ok(if broken == 0 && table.held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+}
+
+/// Returns the sandbox, or a refusal that says what is missing.
+pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
+    let supervisor = Supervisor::this_program();
+    if unsafe_no_sandbox {
+        return Backend::unsandboxed(supervisor).context("programs can't be run on this machine, not even unsafely");
+    }
+    Backend::best(supervisor).context(
+        "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do, \
+         --unsafe-no-sandbox runs them all the same",
+    )
 }

@@ -10,7 +10,7 @@ use crate::{
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
     },
     suite::{
-        Grade, PassedOver, SceneGrade,
+        Grade, PassedOver,
         cards::{self, Cards, Draw, JudgedTrace},
         config::Hints,
         guarded,
@@ -65,14 +65,19 @@ impl Pages {
         }
     }
 
-    /// Returns the card of a scene, of those that its grade names.
-    pub(super) fn card(&self, scene: &SceneGrade) -> Option<Card> {
-        Card::from_kept(&cards::read(&self.cards, scene.card.as_deref()?)?)
+    /// Returns the card of this name.
+    pub(super) fn card(&self, name: Option<&str>) -> Option<Card> {
+        Card::from_kept(&cards::read(&self.cards, name?)?)
+    }
+
+    /// Keeps a card; returns its name. One that can't be kept costs a picture and nothing else.
+    pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
+        cards::store(&self.cards, &card?.kept()).ok()
     }
 
     /// Returns the page of one submission.
     pub(super) fn render_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
-        GradePage { grade, card: &|scene| self.card(scene), class, reader }.html()
+        GradePage { grade, card: &|name| self.card(name), class, reader }.html()
     }
 
     /// Writes the pages for staff into the folder for results, and beside them those to hand out: of a class always,

@@ -1,5 +1,5 @@
 //! A program that is run on many small scenes: what is wrong on each, and what is likely wrong with the program.
-use super::{grade::backend, pages};
+use super::{host::backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
     cli::{console, input, interrupt::cancelled_by_signals},
@@ -24,6 +24,7 @@ use crate::{
         located::{ContentIndex, Contents, FailureKind, LocatedFailure, TriedScene, locate},
         milestone,
         plan::{self, Plan},
+        smallest::impatient,
     },
     together::told::cut,
 };
@@ -37,9 +38,6 @@ use std::{
 
 /// The time on the processor and on the clock for a program on scenes of which a right one needs some milliseconds.
 const PATIENT: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
-
-/// The time after a run that has ended at a limit. What the program has recorded until then is read all the same.
-const IMPATIENT: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
 /// The number of runs that may end at a limit at all: the other scenes would say the same.
 const MOST_STOPPED: usize = 4;
@@ -114,10 +112,9 @@ impl ProgramUnderTest {
     }
 
     /// Returns the suite's limits, or less time where a right program needs some milliseconds.
-    pub(super) fn limits(&self, is_patient: bool) -> RunLimits {
-        let [cpu, wall] = if is_patient { PATIENT } else { IMPATIENT };
+    pub(super) fn limits(&self) -> RunLimits {
         let limits = self.plan.limits;
-        RunLimits { cpu: limits.cpu.min(cpu), wall: limits.wall.min(wall), ..limits }
+        RunLimits { cpu: limits.cpu.min(PATIENT[0]), wall: limits.wall.min(PATIENT[1]), ..limits }
     }
 
     /// Returns the scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes
@@ -141,7 +138,9 @@ impl ProgramUnderTest {
 
     /// Runs it on these scenes. Nothing when it was interrupted.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
-        let (long, short) = (self.limits(true), self.limits(false));
+        let long = self.limits();
+        // After a run that has ended at a limit.
+        let short = impatient(&long);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
         for task in &tasks {

@@ -1,30 +1,36 @@
 //! `shrink`: the smallest scene on which a program is still wrong for the same reason.
-use super::probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks};
+use super::{
+    pages::Pages,
+    probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks},
+};
 use crate::{
     cli::{
         arguments::{ExplainFormat, ShrinkArguments},
         console, exit,
         output::Output,
     },
-    diagnose::Explanation,
+    diagnose::{About, Explanation, is_named_in},
     evidence::{InspectedPair, inspect},
     judge::{Rules, overlap::OverlapStudy, replay},
     report::{
         case::Case,
         check::{Check, StepChoice, WrongSteps},
+        describe::pair_key,
         detect::{Detect, Overlap, Place},
         diagnosis::Diagnosis,
-        page::ExplainedPage,
-        smallest::SmallestReport,
+        page::{Card, ExplainedPage},
+        smallest,
         style::Style,
     },
-    scene::Scene,
-    shrink::WrongReason,
+    scene::{self, Scene},
+    shrink::{SmallScene, WrongReason},
     sim::{Pair, State, pairs},
     suite::{
         config::Hints,
         located::FailureKind,
-        smallest::{ShrinkLimits, Shrinker, SmallestScene, WrongScene, causes},
+        smallest::{
+            HandComputation, QUICK, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient,
+        },
     },
     together::told::cut,
     trace::{Frame, Layout, Reader},
@@ -32,11 +38,11 @@ use crate::{
 use anyhow::Result;
 use std::{path::Path, time::Duration};
 
-/// The limits where the smallest scenes are only the end of a report.
-pub(super) const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), jobs: JOBS };
-
 /// Runs at one time.
 const JOBS: usize = 2;
+
+/// The limits where the smallest scenes are only the end of a report.
+pub(super) const AT_THE_END: ShrinkLimits = ShrinkLimits { jobs: JOBS, ..QUICK };
 
 pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
@@ -55,20 +61,21 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let drawing = Drawing { has_pictures: arguments.format == ExplainFormat::Html, ..drawing };
     let limits = ShrinkLimits { runs, time, jobs: JOBS };
     add_smallest(&program, &mut examined, limits, arguments.step, drawing)?;
-    for (number, small) in examined.diagnosis.smallest.iter_mut().enumerate() {
-        let Some(name) = arguments.output.as_deref().map(|name| numbered(name, number)) else { break };
-        Output::create(&name, &[])?.finish_with(small.xml().as_bytes())?;
-        small.file = Some(name.display().to_string());
-    }
     let Diagnosis { smallest, .. } = &examined.diagnosis;
+    let mut texts = Vec::new();
+    for (number, small) in smallest.iter().enumerate() {
+        let file = arguments.output.as_deref().map(|name| numbered(name, number));
+        if let Some(name) = &file {
+            Output::create(name, &[])?.finish_with(small.xml.as_bytes())?;
+        }
+        let file = file.map(|name| name.display().to_string());
+        texts.push(smallest::text(small, file.as_deref(), console::style()));
+    }
     match arguments.format {
         ExplainFormat::Text if smallest.is_empty() => {
             console::report("No smaller scene shows again what is wrong.\n")?;
         }
-        ExplainFormat::Text => {
-            let texts: Vec<String> = smallest.iter().map(|one| one.text(console::style())).collect();
-            console::report(&texts.join("\n"))?;
-        }
+        ExplainFormat::Text => console::report(&texts.join("\n"))?,
         ExplainFormat::Json => console::print(examined.diagnosis.json())?,
         ExplainFormat::Html => {
             let cards = &examined.cards[examined.diagnosis.cases.len()..];
@@ -98,62 +105,95 @@ pub(super) fn add_smallest(
     let runs = diagnosis.cases.iter().zip(&*tasks).zip(&*ends).filter(|((case, _), _)| !case.accepted);
     let wrong: Vec<WrongScene<'_>> =
         runs.map(|((case, task), (ended, _))| WrongScene { task, explanations: &case.explanations, ended }).collect();
-    let run_limits = program.limits(false);
+    let run_limits = impatient(&program.limits());
     let shrinker = Shrinker {
         runner: program.runner(&run_limits),
         program: &program.program,
         assignment: program.assignment,
         limits,
     };
+    let name = program.program.display().to_string();
     let causes = causes(&diagnosis.common, &wrong);
     let bar = console::Bar::for_runs(causes.len() as u64);
-    let mut found: Vec<SmallestReport> = Vec::new();
+    let mut found: Vec<SmallestScene> = Vec::new();
     for mut cause in causes {
         bar.next_run("making scenes smaller");
         cause.step = step;
         let small = shrinker.smallest(&cause, &mut |_| {}).map_err(anyhow::Error::msg)?;
-        let Some(small) = small.filter(|small| found.iter().all(|one| one.scene != small.small.scene)) else {
-            continue;
-        };
-        let name = program.program.display().to_string();
-        let failing = FailureKind::from_end(&small.seen.ended);
-        let note = failing.map(|_| format!("the program {}", small.seen.ended));
-        let names = (small.origin.clone(), name);
-        let (mut case, card, _) = case(names, false, &small.small.scene, &small.seen.trace[..], note, drawing);
-        if let WrongReason::Mistake(cause) = &small.reason {
-            lead_with(cause, drawing.hints, &mut case);
+        let told = small.map(|small| describe(&small, &name, drawing));
+        if let Some((small, card)) = told.filter(|(told, _)| found.iter().all(|one| one.xml != told.xml)) {
+            found.push(small);
+            cards.push(card);
         }
-        let style = if drawing.has_pictures { Style::Plain } else { console::style() };
-        let (differs, pair) = differences(&small, style);
-        let is_told = drawing.hints == Hints::Full;
-        let by_hand = pair.and_then(|pair| Some((pair, by_hand(&small, pair, style)?)));
-        let (runs, is_minimal) = (small.small.runs, small.small.is_minimal);
-        found.push(SmallestReport {
-            case,
-            runs,
-            is_minimal,
-            differs: differs.filter(|_| is_told),
-            by_hand: by_hand.filter(|_| is_told),
-            file: None,
-            scene: small.small.scene,
-        });
-        cards.push(card);
     }
     diagnosis.smallest = found;
     Ok(())
 }
 
+/// Returns what is to be said of a smallest scene in a grade, with its cards among the pages'. Staff and students are
+/// told this much.
+pub(super) fn graded(small: &ShrunkScene, program: &str, hints: [Hints; 2], pages: Option<&Pages>) -> SmallestScene {
+    let has_pictures = pages.is_some();
+    let [(mut for_staff, card), (_, own)] =
+        hints.map(|hints| describe(small, program, Drawing { hints, has_pictures }));
+    let keep = |card| pages.and_then(|pages| pages.keep(card));
+    (for_staff.card, for_staff.card_for_students) = (keep(card), keep(own));
+    for_staff
+}
+
+/// Returns what is to be said of a smallest scene, and its card.
+fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
+    let ShrunkScene { reason, origin, small: SmallScene { scene, runs, is_minimal }, seen, .. } = small;
+    let note = FailureKind::from_end(&seen.ended).map(|_| format!("the program {}", seen.ended));
+    let names = ("small.xml".to_owned(), program.to_owned());
+    let (mut case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
+    if let WrongReason::Mistake(cause) = reason {
+        lead_with(cause, drawing.hints, &mut case);
+    }
+    let Case { trace: program, note, first, explanations, .. } = case;
+    let mut told = SmallestScene {
+        origin: origin.clone(),
+        program,
+        xml: scene::write(scene),
+        bodies: scene.particles.len(),
+        steps: scene.steps(),
+        runs: *runs,
+        is_minimal: *is_minimal,
+        note,
+        first,
+        explanations,
+        differs: None,
+        by_hand: None,
+        card: None,
+        card_for_students: None,
+    };
+    if drawing.hints == Hints::Full {
+        let (differs, pair) = differences(small);
+        told.differs = differs;
+        told.by_hand =
+            pair.and_then(|pair| Some(HandComputation { pair: pair_key(pair), text: by_hand(small, pair)? }));
+    }
+    (told, card)
+}
+
 /// Puts the cause before what else would explain the run; its example is that of the run.
 fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
-    let example = case.explanations.first().and_then(|one| one.example.clone());
-    let cause = Explanation { example, reproduced: 0, samples: 0, same_as: Vec::new(), ..cause.clone() };
-    case.explanations.retain(|one| one.said() != cause.said());
-    case.explanations.splice(0..0, cut(hints, vec![cause]));
+    let own = case.explanations.iter().position(|one| is_named_in(cause, std::slice::from_ref(one)));
+    let own = own.map(|place| case.explanations.remove(place)).or_else(|| case.explanations.first().cloned());
+    let lead = match own {
+        // Its counts are those of the run.
+        Some(own) if matches!(cause.about, About::Pairs(_)) => own,
+        own => {
+            let example = own.and_then(|own| own.example);
+            Explanation { example, reproduced: 0, samples: 0, same_as: Vec::new(), ..cause.clone() }
+        }
+    };
+    case.explanations.splice(0..0, cut(hints, vec![lead]));
 }
 
 /// Returns the values that differ, and the pair that tells most: that of the first finding, else one that collides,
 /// else the first.
-fn differences(small: &SmallestScene, style: Style) -> (Option<String>, Option<Pair>) {
+fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
@@ -174,11 +214,11 @@ fn differences(small: &SmallestScene, style: Style) -> (Option<String>, Option<P
     };
     let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
     let first = findings.and_then(|findings| findings.first_divergence).and_then(|first| first.detail.pair());
-    (check.steps_text(style), first.or_else(|| pairs(scene).iter().next()))
+    (check.steps_text(Style::Plain), first.or_else(|| pairs(scene).iter().next()))
 }
 
 /// Returns what the reference computes for a pair in a scene of one step, beside what the trace has of it.
-fn by_hand(small: &SmallestScene, pair: Pair, style: Style) -> Option<String> {
+fn by_hand(small: &ShrunkScene, pair: Pair) -> Option<String> {
     let scene: &Scene = &small.small.scene;
     let layout = Layout::for_scene(scene);
     let (before, frames) = (State::for_scene(scene), frames(&small.seen.trace, layout));
@@ -190,12 +230,12 @@ fn by_hand(small: &SmallestScene, pair: Pair, style: Style) -> Option<String> {
     if !layout.polynomials {
         let study = &OverlapStudy::for_pair(scene, 1, &before, pair).ok()??;
         let logged = Some(end.impulses.iter().any(|logged| logged.pair() == Some(pair)));
-        return Some(Overlap { study, scene: name, trace, step: 1, pair, logged }.text(style));
+        return Some(Overlap { study, scene: name, trace, step: 1, pair, logged }.text(Style::Plain));
     }
     let InspectedPair { step, .. } = inspect(scene, 1, &before, Some((&mid.state, &end.polynomials)), pair);
     let (call, passes) = (step.calls.first()?, step.calls.len());
     let place = Place { scene: name, trace, step: 1, pair, pass: Some(call.pass), passes, logged: &call.logged };
-    Some(Detect { study: call.study.as_ref().ok()?, place: Some(place) }.text(style))
+    Some(Detect { study: call.study.as_ref().ok()?, place: Some(place) }.text(Style::Plain))
 }
 
 /// Returns the records of a trace, as far as they can be read.

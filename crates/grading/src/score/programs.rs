@@ -1,6 +1,7 @@
 //! The grade of a program that was run.
 use crate::{
     config::Visibility,
+    execute::Runner,
     grade::Grade,
     grader::{SubmissionGrading, lock},
     located::{Contents, FailureKind, LocatedFailure, TriedScene, locate},
@@ -8,10 +9,18 @@ use crate::{
     plan::PlannedGroup,
     result::{Reason, RunEnd, SceneResult},
     score,
+    smallest::{DescribeSmallest, QUICK, Shrinker, SmallestScene, WrongScene, causes, impatient},
+    staging::StagedProgram,
     verdict::Verdict,
 };
-use fosssim_mistakes::together::settle;
+use fosssim_mistakes::{
+    diagnose::Explanation,
+    together::{likely_mistakes, settle},
+};
 use fosssim_model::assignments::Assignment;
+
+/// Causes of one submission of which a grading makes a scene.
+const MOST_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {
     /// Returns the grade, of the results of all scenes in the plan's order, each with the word whether it was found.
@@ -31,6 +40,9 @@ impl SubmissionGrading<'_> {
         self.time(&mut results);
         let looks_like = self.looks_like(&results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
+        if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
+            drop(self.staged());
+        }
         // The submission's copy goes away.
         let staged = lock(&self.staged).take();
         let (program, build) = match staged.as_deref() {
@@ -59,7 +71,46 @@ impl SubmissionGrading<'_> {
             grade.located = common(&grade, || self.shared.contents(plan));
         }
         settle(&mut grade);
+        if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
+            grade.smallest = self.smallest(&grade, staged, describe);
+        }
         grade
+    }
+
+    /// Returns the smallest scene for each cause. It is made from scenes that students see, where these show it: it
+    /// must tell nothing of others.
+    fn smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
+        let plan = self.grader.plan;
+        let is_visible = |name: &str| {
+            let groups = grade.groups.iter().filter(|group| group.visibility == Visibility::Visible);
+            groups.flat_map(|group| &group.scenes).any(|scene| scene.scene == name)
+        };
+        let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
+        let wrong = grade.scenes().zip(plan.scenes()).filter(|(scene, _)| is_wrong(scene));
+        let wrong: Vec<WrongScene<'_>> = wrong
+            .filter_map(|(scene, task)| {
+                Some(WrongScene { task, explanations: &scene.explanations, ended: scene.ended.as_ref()? })
+            })
+            .collect();
+        let Some(first) = plan.scenes().next() else { return Vec::new() };
+        let limits = impatient(&plan.limits);
+        let shrinker = Shrinker {
+            runner: Runner { limits: &limits, cards: None, ..self.runner(first, None) },
+            program: &staged.program,
+            assignment: plan.assignment(),
+            limits: QUICK,
+        };
+        let mut found: Vec<SmallestScene> = Vec::new();
+        for mut cause in causes(&likely, &wrong).into_iter().take(MOST_CAUSES) {
+            if cause.scenes.iter().any(|task| is_visible(&task.name)) {
+                cause.scenes.retain(|task| is_visible(&task.name));
+            }
+            // A fault here is no reason to lose the grade.
+            let small = shrinker.smallest(&cause, &mut |_| {}).ok().flatten();
+            let told = small.map(|small| tell(&small, plan.student_hints(&small.origin)));
+            found.extend(told.filter(|told| found.iter().all(|one| one.xml != told.xml)));
+        }
+        found
     }
 
     /// Returns the milestone of which the program seems to be, if its library lacks what the suite's has. It is looked
@@ -77,6 +128,12 @@ impl SubmissionGrading<'_> {
         let found = milestone::looks_like(&self.runner(first, None), program).ok().flatten();
         found.filter(|found| milestone::lacks(*found, expected))
     }
+}
+
+/// Returns whether a program is wrong on a scene that it was run on.
+fn is_wrong(result: &SceneResult) -> bool {
+    let is_of_us = matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun | Verdict::Unusable);
+    !is_of_us && !result.verdict.is_accepted() && result.ended.is_some()
 }
 
 /// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,

@@ -9,7 +9,7 @@ use fosssim_findings::{
     Rules,
     explanation::{About, Explanation, NanStage, NotFinite},
 };
-use fosssim_mistakes::together::{likely_mistakes, settle};
+use fosssim_mistakes::together::{likely_mistakes, settle, worth};
 use std::time::Duration;
 
 fn explanation(key: &str, about: About, reproduced: u64) -> Explanation {
@@ -59,6 +59,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         program: None,
         same_program: Vec::new(),
         before: None,
+        smallest: Vec::new(),
     };
     settle(&mut grade);
     grade
@@ -117,4 +118,20 @@ fn where_numbers_end_comes_last() {
     assert_eq!(first(vec![vec![end()], vec![end()], vec![short(4)]]), "loop-one-fewer");
     assert_eq!(first(vec![vec![short(4), end()], vec![short(4), end()]]), "loop-one-fewer");
     assert_eq!(first(vec![vec![end(), short(3)], vec![end(), short(3)]]), "loop-one-fewer", "though it is not proven");
+}
+
+/// Mending a mistake is worth the scenes in which it is the only one, and a group of all or nothing only as a whole.
+#[test]
+fn a_mistake_is_worth_the_points_that_it_alone_costs() {
+    let one = |key: &str| explanation(key, About::Mistake, 4);
+    let part = Explanation { samples: 5, ..one("loop-one-fewer") };
+    let scenes = vec![vec![one("loop-one-fewer")], vec![one("loop-one-fewer"), one("pp-no-two")], vec![part], vec![]];
+    let mut grade = grade(scenes);
+    assert_eq!([one("loop-one-fewer"), one("pp-no-two")].map(|mistake| worth(&grade, &mistake)), [0.25, 0.0]);
+    grade.groups[0].all_or_nothing = true;
+    assert_eq!(worth(&grade, &one("loop-one-fewer")), 0.0, "other scenes stay wrong");
+    grade.groups[0].scenes.truncate(1);
+    assert_eq!(worth(&grade, &one("loop-one-fewer")), 0.25);
+    grade.groups[0].extra = true;
+    assert_eq!(worth(&grade, &one("loop-one-fewer")), 0.0);
 }

@@ -4,10 +4,11 @@ use crate::diagnose::{is_named_in, settled, several};
 use fosssim_findings::{
     Hints, Visibility,
     explanation::Explanation,
-    grade::{Grade, GroupGrade},
+    grade::{Grade, GroupGrade, SceneGrade},
+    smallest::SmallestScene,
 };
 use std::{borrow::Cow, time::Duration};
-use told::cut_result;
+use told::{cut_result, cut_smallest};
 
 pub mod told;
 
@@ -16,10 +17,10 @@ pub mod told;
 #[must_use]
 pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     let is_all_told = grade.groups.iter().all(|group| group.hints == Hints::Full);
-    if is_all_told && grade.same_program.is_empty() {
+    if is_all_told && grade.same_program.is_empty() && grade.smallest.is_empty() {
         return Cow::Borrowed(grade);
     }
-    let mut told = Grade { same_program: Vec::new(), ..grade.clone() };
+    let mut told = Grade { same_program: Vec::new(), smallest: smallest_told(grade), ..grade.clone() };
     if is_all_told {
         return Cow::Owned(told);
     }
@@ -63,6 +64,39 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
         visible.groups.iter_mut().for_each(GroupGrade::withhold);
     }
     Cow::Owned(visible)
+}
+
+/// Returns the smallest scenes that students may see: made from a scene of a group that they see at once, and with no
+/// more than its hints tell. There is none where the suite withholds what programs chose, since they are that.
+fn smallest_told(grade: &Grade) -> Vec<SmallestScene> {
+    let told = |small: &SmallestScene| {
+        let is_origin = |scene: &SceneGrade| scene.scene == small.origin;
+        let group = grade.groups.iter().find(|group| group.scenes.iter().any(is_origin))?;
+        (group.visibility == Visibility::Visible).then(|| cut_smallest(group.hints, small.clone()))?
+    };
+    if grade.is_visible() || grade.shows_output { grade.smallest.iter().filter_map(told).collect() } else { Vec::new() }
+}
+
+/// Returns the points of the scenes that a mistake alone makes wrong, which is what mending it is worth: the simulator
+/// with this mistake, and no other, makes their wrong steps as the submission does. Points for speed and extra points
+/// do not count.
+#[must_use]
+pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
+    let is_mended = |scene: &SceneGrade| {
+        // Where several are proven, they reproduce the steps together only.
+        let mut proven = scene.explanations.iter().filter(|one| one.is_proven()).peekable();
+        proven.peek().is_some() && proven.all(|one| is_named_in(mistake, std::slice::from_ref(one)))
+    };
+    let of_group = |group: &GroupGrade| {
+        let is_right = |scene: &SceneGrade| scene.verdict.is_accepted() || is_mended(scene);
+        if group.all_or_nothing && !group.scenes.iter().all(is_right) {
+            return 0.0;
+        }
+        let lost = |scene: &SceneGrade| scene.points.map_or(0.0, |points| scene.max_points - points);
+        group.scenes.iter().filter(|scene| group.all_or_nothing || is_mended(scene)).map(lost).sum()
+    };
+    // A sum of nothing is -0.
+    grade.groups.iter().filter(|group| !group.extra).map(of_group).sum::<f64>() + 0.0
 }
 
 /// Returns the mistake that explains most wrong scenes, where several have explanations: together they nearly always

@@ -5,6 +5,7 @@ use fosssim_findings::{
     Hints, SceneResult, Verdict,
     explanation::Explanation,
     result::{Reason, WrongTrace},
+    smallest::SmallestScene,
 };
 
 /// Cuts a result down to a level. The verdict, its reason and where the rule books differ stay at all levels, but at
@@ -19,6 +20,14 @@ pub fn cut_result(hints: Hints, result: &mut SceneResult) {
     result.disclosure = result.disclosure.take().and_then(|all| hints.disclose(all));
     result.explanations = cut(hints, std::mem::take(&mut result.explanations));
     result.card = result.card_for_students.take();
+}
+
+/// Cuts a smallest scene down to a level, in which it is nothing where that is [`Hints::None`].
+#[must_use]
+pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
+    small.explanations = cut(hints, std::mem::take(&mut small.explanations));
+    small.cut(hints);
+    (hints > Hints::None).then_some(small)
 }
 
 /// Cuts explanations down to a level: below [`Hints::What`] there is only where numbers end, if they do

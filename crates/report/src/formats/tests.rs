@@ -3,7 +3,7 @@ use super::Format;
 use crate::grade::{csv_of_submissions, json_lines, samples, warn_of};
 use crate::page::{Audience, GradePage};
 use fosssim_grading::{
-    Grade, PassedOver, Reason, SceneGrade, Verdict,
+    Grade, PassedOver, Reason, Verdict,
     config::Visibility,
     located::{Content, FailureKind, LocatedFailure},
     result::{ProgramProgress, RunEnd, WrongTrace},
@@ -321,8 +321,8 @@ fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
         grade
     };
     let told = |grade: &Grade| {
-        let card = |scene: &SceneGrade| {
-            assert!(scene.card.is_none() || grade.shows_output, "a picture");
+        let card = |name: Option<&str>| {
+            assert!(name.is_none() || grade.shows_output, "a picture");
             None
         };
         let page = GradePage { grade, card: &card, class: None, reader: Audience::Student }.html();

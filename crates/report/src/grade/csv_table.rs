@@ -3,6 +3,7 @@ use super::{likely_mistakes, no_points, phrases::NOT_GRADED, points};
 use crate::foreign::one_line;
 use crate::{view::key, words};
 use fosssim_findings::{Grade, PassedOver, speed::SpeedSource};
+use fosssim_mistakes::together::worth;
 
 /// Returns one row per scene.
 pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
@@ -35,12 +36,13 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 
 /// Returns one row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge
 /// differently. Points are empty where the grader failed or was stopped; `reason` says in one sentence why not
-/// everything is accepted, and `same_program` names the others with the same program. Entries that are no submissions
+/// everything is accepted, `same_program` names the others with the same program, and `worth` is what mending the first
+/// likely mistake is worth. Entries that are no submissions
 /// have rows with nothing but the reason.
 #[must_use]
 pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
-                reason,same_program";
+                reason,same_program,worth";
     let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
     if let Some(first) = grades.first() {
         head.extend(first.groups.iter().map(|group| safe(&group.name)));
@@ -62,6 +64,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             safe(&mistakes.join(" ")),
             safe(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
             safe(&grade.same_program.join(", ")),
+            likely_mistakes(grade).first().map(|(first, _)| points(worth(grade, first))).unwrap_or_default(),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
         row.extend(grade.groups.iter().filter_map(|group| group.speed.as_ref()).map(|speed| match &speed.source {

@@ -3,6 +3,7 @@ use super::{super::explain::ExplanationView, phrases::NOT_GRADED, speed_words};
 use crate::foreign::{plain, printed};
 use crate::{
     check::CauseView,
+    smallest::SmallestView,
     view::{document, view},
     words,
 };
@@ -13,7 +14,7 @@ use fosssim_findings::{
     located::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
-use fosssim_mistakes::together::{likely_mistake, likely_mistakes};
+use fosssim_mistakes::together::{likely_mistake, likely_mistakes, worth};
 use serde::Serialize;
 
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
@@ -78,6 +79,12 @@ view! {
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
             likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
+        /// The points of the scenes that each of these mistakes alone makes wrong: what mending it is worth.
+        #[schemars(length(max = 3))]
+        worth: Vec<f64> = likely_mistakes(grade).iter().map(|(mistake, _)| worth(grade, mistake)).collect(),
+        /// The smallest scene for each cause; left out where these were not asked for.
+        #[serde(skip_serializing_if = "Vec::is_empty")]
+        smallest: Vec<SmallestView> = grade.smallest.iter().map(SmallestView::from).collect(),
         /// Other submissions with the same program, byte for byte, at most 20; left out where there are none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         same_program: Vec<String> = grade.same_program.iter().map(|name| plain(name)).collect(),

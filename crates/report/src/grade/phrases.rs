@@ -1,8 +1,8 @@
 //! The sentences about a grade that several formats have in common.
 use crate::{foreign::one_line, number::counted, words};
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
-use fosssim_mistakes::diagnose::Explanation;
 pub use fosssim_mistakes::together::likely_mistakes;
+use fosssim_mistakes::{diagnose::Explanation, together};
 
 /// The text in place of a verdict where an entry is no submission.
 pub(super) const NOT_GRADED: &str = "not graded";
@@ -21,10 +21,18 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }
-        format!("{}: {what} (explains {explained} of {wrong})", std::mem::replace(&mut rank, "also likely"))
+        let worth = worth(grade, &mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
+        format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
     let located = grade.located.as_ref().map(words::located);
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
+}
+
+/// Returns what mending a mistake is worth, such as `worth 21.4 of 100 points`; nothing where no points are lost by it
+/// alone.
+pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
+    let lost = together::worth(grade, mistake);
+    (lost > 0.0).then(|| format!("worth {}", score(lost, grade.max_points)))
 }
 
 /// Returns the number of scenes for which an explanation is looked for, with their noun.
@@ -73,6 +81,13 @@ pub(super) fn some(names: &[impl AsRef<str>], most: usize) -> String {
 pub fn points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Returns `12.5 of 20 points`.
+#[must_use]
+pub fn score(reached: f64, most: f64) -> String {
+    let plural = if points(most) == "1" { "" } else { "s" };
+    format!("{} of {} point{plural}", points(reached), points(most))
 }
 
 /// Returns the points that may be missing: where the grader failed or was stopped nobody has a zero.

@@ -1,5 +1,5 @@
 //! Grades for tests: one good, one bad in every way, with hostile words in it.
-use fosssim_findings::FindingPlace;
+use fosssim_findings::{FindingPlace, smallest::SmallestScene};
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Hints, Marking, Visibility},
@@ -55,6 +55,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
         program: None,
         same_program: Vec::new(),
         before: None,
+        smallest: Vec::new(),
         shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
         groups,
         build: None,
@@ -192,4 +193,24 @@ pub(crate) fn unwritten() -> Grade {
     );
     settle(&mut grade);
     grade
+}
+
+/// Returns a smallest scene with these explanations.
+pub(crate) fn smallest(explanations: Vec<Explanation>) -> SmallestScene {
+    SmallestScene {
+        origin: "Holistic/first".to_owned(),
+        program: "./FOSSSim".to_owned(),
+        xml: "<scene>\n</scene>\n".to_owned(),
+        bodies: 1,
+        steps: 1,
+        runs: 7,
+        is_minimal: true,
+        note: None,
+        first: None,
+        explanations,
+        differs: None,
+        by_hand: None,
+        card: None,
+        card_for_students: None,
+    }
 }

@@ -3,6 +3,7 @@ use super::{
     document,
     graded::key,
     markup::{data, table, text},
+    smallest::pre,
 };
 use crate::foreign::one_line;
 use crate::{
@@ -10,10 +11,11 @@ use crate::{
         ClassFigures, SharedMistake, frequent, hardest, likely_mistakes, never_ran, points, reached, same_programs,
     },
     number::counted,
+    smallest::title,
     words,
 };
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
-use fosssim_mistakes::diagnose::is_named_in;
+use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::{collections::BTreeMap, fmt::Write};
 
 const SCRIPT: &str = include_str!("class.js");
@@ -181,6 +183,7 @@ impl ClassPage<'_> {
                     let (page, key, name) = ((self.page)(first), key(&scene.scene), one_line(&scene.scene));
                     format!("To show it: <a href=\"{}#scene-{key}\">{}</a>. ", text(&page), text(&name))
                 });
+                let look = look + &self.show_in_class(mistake, members);
                 let heading = text(&one_line(&words::explanation::what_or(mistake)));
                 self.cluster(&heading, members, &look, Some(number))
             })
@@ -207,6 +210,20 @@ impl ClassPage<'_> {
         out + "</section>\n"
     }
 
+    /// Returns the smallest scene on which one of these submissions shows the mistake, for the blackboard.
+    fn show_in_class(&self, mistake: &Explanation, members: &[usize]) -> String {
+        let all = members.iter().flat_map(|&number| &self.grades[number].smallest);
+        let named = all.filter(|small| is_named_in(mistake, &small.explanations));
+        let Some(small) = named.min_by_key(|small| small.size()) else { return String::new() };
+        let by_hand = small.by_hand.as_ref().map(|by_hand| &by_hand.text);
+        let words: String = [Some(&small.xml), small.differs.as_ref(), by_hand]
+            .into_iter()
+            .zip(["The scene", "The values that differ", "By hand"])
+            .filter_map(|(words, label)| Some(pre(label, words?)))
+            .collect();
+        format!("<details><summary>To show in class: {}</summary>{words}</details>", text(&title(small)))
+    }
+
     /// Returns the submissions with the same program, group by group.
     fn same_programs(&self) -> String {
         let groups = same_programs(self.grades);
@@ -227,7 +244,7 @@ impl ClassPage<'_> {
             format!(" <button type=\"button\" data-only=\"m{number}\">Show only these</button>")
         });
         format!(
-            "<details class=\"cluster\"><summary><b>{}</b> {heading}</summary>\n<p>{look}{}</p>\
+            "<details class=\"cluster\"><summary><b>{}</b> {heading}</summary>\n<div>{look}{}</div>\
              <p class=\"filter\" hidden><button type=\"button\" data-copy=\"{}\">Copy the names</button>{only}</p>\
              </details>\n",
             members.len(),
@@ -463,6 +480,7 @@ fn histogram(grades: &[Grade]) -> String {
 mod tests {
     use super::*;
     use crate::grade::samples;
+    use fosssim_findings::smallest::SmallestScene;
     use fosssim_grading::{
         GroupGrade, Reason, SceneResult,
         config::{Credit, Hints, Marking, Visibility},
@@ -518,6 +536,20 @@ mod tests {
         assert!(html.len() < 1_000_000, "{}", html.len());
         assert_eq!(html.matches("<td class=\"heat\"").count(), 300);
         assert!(html.contains("No two submissions make the same mistake."), "each fails in words of its own");
+    }
+
+    #[test]
+    fn the_smallest_scene_of_a_shared_mistake_is_there_to_be_shown_in_class() {
+        let explanations = crate::explain::tests::explanations();
+        let mut grades = ["ada", "eve"].map(|name| grade(name, |scene| (scene == 0).then(|| "wrong".to_owned())));
+        for (grade, bodies) in grades.iter_mut().zip([3, 2]) {
+            grade.groups[0].scenes[0].result.explanations = explanations[..1].to_vec();
+            let xml = format!("<scene> of {bodies} </scene>");
+            grade.smallest = vec![SmallestScene { xml, bodies, ..samples::smallest(explanations[..1].to_vec()) }];
+        }
+        let html = page(&grades);
+        assert!(html.contains("To show in class: The smallest scene: 2 bodies, 1 step"), "{html}");
+        assert!(html.contains("&lt;scene&gt; of 2 ") && !html.contains("&lt;scene&gt; of 3 "));
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::{
     document,
     graded::{self, key, rank},
     markup::text,
-    script,
+    script, smallest,
 };
 use crate::{case::Case, diagnosis::Diagnosis, words::first_divergence};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
@@ -34,7 +34,7 @@ impl ExplainedPage<'_> {
     /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {
-        let Diagnosis { cases, common, located, smallest } = self.diagnosis;
+        let Diagnosis { cases, common, located, smallest: small } = self.diagnosis;
         let wrong = cases.iter().filter(|case| !case.accepted).count();
         let look = if wrong == 0 { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
@@ -56,9 +56,8 @@ impl ExplainedPage<'_> {
             cases.iter().zip(self.cards).map(|(case, card)| (case, card.as_ref())).collect();
         let first =
             (0..all.len()).filter(|&number| !cases[number].accepted).min_by_key(|&number| telling(all[number], common));
-        for (number, (small, card)) in smallest.iter().zip(&self.cards[cases.len()..]).enumerate() {
-            let _ = write!(body, "<h2>{}</h2>\n<pre>{}</pre>\n", text(&small.title()), text(&small.xml()));
-            body += &article((&small.case, card.as_ref()), cases.len() + number, true);
+        for (number, (small, card)) in small.iter().zip(&self.cards[cases.len()..]).enumerate() {
+            body += &smallest::article(small, card.as_ref(), number + 1);
         }
         for (number, &one) in all.iter().enumerate() {
             body += &article(one, number, first == Some(number));

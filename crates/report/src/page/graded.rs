@@ -5,12 +5,13 @@ use super::{
     document,
     markup::{table, text},
     room::{self, OUTPUTS, Room},
-    script,
+    script, smallest,
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        change_lines, difference, extra, likely_mistakes, no_points, points, reached, score, speed_words, wrong_scenes,
+        change_lines, difference, extra, likely_mistakes, no_points, points, reached, score, speed_words, worth,
+        wrong_scenes,
     },
     number::counted,
     words,
@@ -39,8 +40,8 @@ pub enum Audience {
 pub struct GradePage<'a> {
     /// The grade.
     pub grade: &'a Grade,
-    /// The card of a scene, where one was drawn.
-    pub card: &'a dyn Fn(&SceneGrade) -> Option<Card>,
+    /// The card of this name, where it was kept.
+    pub card: &'a dyn Fn(Option<&str>) -> Option<Card>,
     /// The address of the class's page, seen from this one.
     pub class: Option<&'a str>,
     /// Whom it is for.
@@ -60,6 +61,7 @@ impl GradePage<'_> {
         let mut body = self.head(grade, &told);
         let has_scenes = grade.unfit().is_none();
         if has_scenes {
+            body += &self.smallest(grade);
             body += &scenes(grade, &told);
         }
         // The viewer is most of a page without cards.
@@ -67,10 +69,19 @@ impl GradePage<'_> {
         document(&format!("{}: {}", grade.submission, grade.verdict.name()), &body, script)
     }
 
+    /// Renders the smallest scenes.
+    fn smallest(&self, grade: &Grade) -> String {
+        let all = grade.smallest.iter().zip(1..);
+        let all: String = all
+            .map(|(small, number)| smallest::article(small, (self.card)(small.card.as_deref()).as_ref(), number))
+            .collect();
+        if all.is_empty() { all } else { format!("<h2>The smallest scenes on which it is wrong</h2>\n{all}") }
+    }
+
     /// Returns the scenes that have something to tell, the most telling one first and the others in their order.
     fn cards<'g>(&self, grade: &'g Grade) -> Vec<(&'g SceneGrade, Option<Card>)> {
         let scenes = grade.scenes().filter(|scene| is_told(scene));
-        let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene))).collect();
+        let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene.card.as_deref()))).collect();
         let likely = likely(grade);
         let first = (0..told.len()).min_by_key(|&place| telling(told[place].0, told[place].1.as_ref(), &likely));
         if let Some(first) = first {
@@ -138,9 +149,10 @@ impl GradePage<'_> {
                 let _ = writeln!(
                     out,
                     "<section class=\"card mistake\"><p class=\"lead\">{}</p>{}<p>{verb} {explained} of \
-                    {wrong}.{}</p></section>",
+                    {wrong}.{}{}</p></section>",
                     text(&words::explanation::what_or(&mistake)),
                     forms.iter().map(|form| format!("<p>{}</p>", text(form))).collect::<String>(),
+                    worth(grade, &mistake).map_or_else(String::new, |worth| format!(" Mending it is {worth}.")),
                     shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
                 );
             }

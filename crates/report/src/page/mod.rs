@@ -15,6 +15,7 @@ mod graded;
 mod markup;
 mod packed;
 mod room;
+mod smallest;
 mod strip;
 #[cfg(test)]
 mod tests;

@@ -254,7 +254,7 @@ fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
     let ((own, mut result), (full, _)) = (drawn(scene, id, hints), drawn(scene, id, Hints::Full));
     (result.card, result.card_for_students) = (Some("full".to_owned()), own.is_some().then(|| "own".to_owned()));
     let grade = wrong(vec![result], hints);
-    let card = |scene: &fosssim_grading::SceneGrade| match scene.card.as_deref() {
+    let card = |name: Option<&str>| match name {
         Some("full") => full.clone(),
         Some("own") => own.clone(),
         _ => None,
@@ -354,10 +354,9 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let id = "failsafe-angular-overwritten";
     let (large, small) = ("HolisticTests/crowd-of-twenty-balls.xml", "GeometricTests/pair-becomes-rigid.xml");
     let scenes = [(unexplained, None), named(large, id), named(small, id)];
-    let results = scenes.iter().map(|(result, _)| result.clone()).collect();
-    let card = |scene: &fosssim_grading::SceneGrade| {
-        scenes.iter().find(|(result, _)| result.scene == scene.scene).and_then(|(_, card)| card.clone())
-    };
+    let called = |(result, _): &(SceneResult, _)| SceneResult { card: Some(result.scene.clone()), ..result.clone() };
+    let results = scenes.iter().map(called).collect();
+    let card = |name: Option<&str>| scenes.iter().find(|(result, _)| Some(&*result.scene) == name)?.1.clone();
     let grade = Grade {
         groups: vec![with_results(marking(Hints::Full), results)],
         verdict: Verdict::RuntimeError,

@@ -2,7 +2,7 @@
 use super::{Text, verdict_look};
 use crate::foreign::{one_line, plain};
 use crate::{
-    grade::{change_lines, likely_mistakes, points, reached, speed_words, wrong_scenes},
+    grade::{change_lines, likely_mistakes, points, reached, speed_words, worth, wrong_scenes},
     number::counted,
     style::Look,
     table::{Align, Cell, Table},
@@ -42,7 +42,8 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = plain(&words::explanation::what_or(mistake));
-        let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong})");
+        let worth = worth(grade, mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
+        let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
         for form in words::explanation::forms(mistake) {
             let _ = writeln!(text, "    {}", plain(&form));
         }

@@ -6,9 +6,9 @@ mod table;
 
 pub use table::{shortened, table};
 
-use super::{super::style::Style, no_points, points};
+use super::{super::style::Style, no_points, points, score};
 use crate::foreign::{one_line, plain, printed};
-use crate::{number::counted, style::Look, words};
+use crate::{number::counted, smallest, style::Look, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
@@ -86,6 +86,7 @@ impl Text<'_> {
             let _ = writeln!(text, "{}", self.verdict(grade));
         }
         *text += &closing::render(self, grade, details.is_empty());
+        text.extend(grade.smallest.iter().map(|small| format!("\n{}", smallest::text(small, None, self.style))));
         text.push('\n');
     }
 
@@ -116,13 +117,6 @@ impl Text<'_> {
         }
         text
     }
-}
-
-/// Returns `12.5 of 20 points`.
-#[must_use]
-pub fn score(reached: f64, most: f64) -> String {
-    let plural = if points(most) == "1" { "" } else { "s" };
-    format!("{} of {} point{plural}", points(reached), points(most))
 }
 
 /// Returns `, 15 of 20 extra points`; nothing where the suite gives none.

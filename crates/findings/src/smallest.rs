@@ -1,0 +1,62 @@
+//! The smallest scene on which a program is still wrong for the same reason, as a value.
+use super::{Hints, disclosure::DisclosedFinding, explanation::Explanation};
+use serde::{Deserialize, Serialize};
+
+/// The smallest scene for a cause.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SmallestScene {
+    /// The name of the scene that it was made from.
+    pub origin: String,
+    /// The program, as a command names it.
+    pub program: String,
+    /// The scene, as a file.
+    pub xml: String,
+    /// The number of bodies.
+    pub bodies: usize,
+    /// The number of steps.
+    pub steps: u32,
+    /// How often the program was run.
+    pub runs: u32,
+    /// Whether no single attempt makes it smaller; else the search was stopped.
+    pub is_minimal: bool,
+    /// How the program ended, where it did not end well.
+    pub note: Option<String>,
+    /// The first thing that is wrong, as far as it may be told.
+    pub first: Option<DisclosedFinding>,
+    /// Likely mistakes, the cause first.
+    pub explanations: Vec<Explanation>,
+    /// The values that differ, in words; with full hints only.
+    pub differs: Option<String>,
+    /// The reference's computation for the pair that tells most; with full hints only.
+    pub by_hand: Option<HandComputation>,
+    /// The card that a page shows of it.
+    pub card: Option<String>,
+    /// The card for students.
+    pub card_for_students: Option<String>,
+}
+
+/// The reference's computation for one pair.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct HandComputation {
+    /// The pair, as `detect --pair` takes it.
+    pub pair: String,
+    /// The computation, as `detect` prints it.
+    pub text: String,
+}
+
+impl SmallestScene {
+    /// Returns the measure by which one is smaller than another.
+    #[must_use]
+    pub const fn size(&self) -> (u32, usize, usize) {
+        (self.steps, self.bodies, self.xml.len())
+    }
+
+    /// Cuts it down to what hints let students know, but for its explanations.
+    pub fn cut(&mut self, hints: Hints) {
+        if hints < Hints::Full {
+            (self.differs, self.by_hand) = (None, None);
+            self.first = self.first.take().and_then(|first| hints.cut(first));
+            self.card = self.card_for_students.take();
+        }
+    }
+}
