@@ -2,9 +2,9 @@
 //! bars that nothing is written across.
 use super::{
     arguments::ColorChoice,
+    arguments::values::TextOrJson,
     interrupt,
     screen::{clear_bars, on_screen, write_above_bars},
-    values::TextOrJson,
 };
 use crate::{
     judge::replay::{Progress, Remark},

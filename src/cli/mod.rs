@@ -5,16 +5,12 @@ mod commands;
 mod console;
 mod defaults;
 pub mod exit;
-mod grading;
 mod input;
 mod interrupt;
 mod original;
 mod output;
-mod pictures;
-mod scenes;
 mod screen;
 mod selection;
-mod values;
 
 use crate::report::foreign::plain;
 use anyhow::Result;

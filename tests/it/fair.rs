@@ -114,7 +114,7 @@ fn every_correct_variant_moves_as_the_correct_sample_and_passes_the_fair_rules()
 
 /// All positions and velocities of a trace, with everything else left out.
 fn states(scene: &Scene, trace: &[u8]) -> Vec<f64> {
-    let mut reader = Reader::of_slice(trace, Layout::for_scene(scene));
+    let mut reader = Reader::from_slice(trace, Layout::for_scene(scene));
     let (mut frame, mut states) = (Frame::default(), Vec::new());
     while reader.next(&mut frame).expect("a whole trace") {
         states.extend_from_slice(&frame.state.positions);

@@ -1,7 +1,7 @@
 //! Commands to look closer at a scene that is not accepted: the one that was typed, with the scene.
 use crate::{
     assignments::Assignment,
-    cli::grading::GradeArguments as Arguments,
+    cli::arguments::grade::GradeArguments as Arguments,
     suite::{Grade, SceneGrade, Submission, config::Hints, library, plan::Plan},
 };
 use std::path::{Path, PathBuf};

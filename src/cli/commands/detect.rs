@@ -2,10 +2,10 @@
 use crate::files::Identity;
 use crate::{
     cli::{
+        arguments::draw::{DetectArguments, DetectFormat},
         console,
         input::{self, SceneInput, pair},
         output::Output,
-        pictures::{DetectArguments, DetectFormat},
     },
     evidence::{self, CallLog, InspectedPair},
     judge::{overlap::OverlapStudy, study::Study},

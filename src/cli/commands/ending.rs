@@ -1,6 +1,6 @@
 //! The common end of the commands that grade: exit code, file names, and how much is shown.
 use crate::{
-    cli::{console, exit, grading::GradeArguments as Arguments},
+    cli::{arguments::grade::GradeArguments as Arguments, console, exit},
     report::grade::{self, Advice, Text, TextDetail},
     suite::{Grade, PassedOver},
 };

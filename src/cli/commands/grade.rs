@@ -15,8 +15,8 @@ use super::{
 };
 use crate::{
     cli::{
+        arguments::grade::GradeArguments as Arguments,
         console, exit,
-        grading::GradeArguments as Arguments,
         interrupt::{cancelled_by_signals, still_at_work},
         output,
         selection::Selection,

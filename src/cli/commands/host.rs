@@ -2,8 +2,8 @@
 use super::pages::{self, Pages};
 use crate::{
     cli::{
+        arguments::grade::{DemoArguments, SelftestArguments},
         console, exit,
-        grading::{DemoArguments, SelftestArguments},
         interrupt::cancelled_by_signals,
         output,
     },

@@ -7,7 +7,7 @@ use super::{
     shard::Part,
 };
 use crate::{
-    cli::{console, grading::MergeArguments, input, interrupt::clean_up_when_interrupted, output},
+    cli::{arguments::grade::MergeArguments, console, input, interrupt::clean_up_when_interrupted, output},
     files::{FileError, Folder, FolderEntry, Place},
     report::{
         grade::{self, TextDetail},

@@ -1,7 +1,7 @@
 //! Where results of a grading go: reports that were asked for, and the tables and pages of a folder.
 use super::pages::Pages;
 use crate::{
-    cli::{console, grading::GradeArguments as Arguments, output},
+    cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{Place, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
     suite::{Grade, PassedOver, guarded},

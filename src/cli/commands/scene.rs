@@ -1,8 +1,8 @@
 //! `scene`: lists, prints and exports the scenes that come with the program.
 use crate::{
     cli::{
+        arguments::scenes::{SceneCommand, SceneExportArguments, SceneListArguments, SceneShowArguments},
         console, output,
-        scenes::{SceneCommand, SceneExportArguments, SceneListArguments, SceneShowArguments},
         selection::Selection,
     },
     files::{FileError, Place},

@@ -2,9 +2,8 @@
 //! `merge`.
 use crate::{
     cli::{
-        console,
-        grading::{GradeArguments as Arguments, MOST_SHARDS, ShardArgument},
-        output,
+        arguments::grade::{GradeArguments as Arguments, MOST_SHARDS, ShardArgument},
+        console, output,
     },
     files::{FileError, Place},
     suite::{Grade, PassedOver, Submission, plan::Plan, score, this_build},

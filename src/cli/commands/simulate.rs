@@ -1,6 +1,10 @@
 //! `simulate`: simulates a scene and records its trace.
 use crate::{
-    cli::{arguments::SimulateArguments, console, input, output::Output, values::TextOrJson},
+    cli::{
+        arguments::{SimulateArguments, values::TextOrJson},
+        console, input,
+        output::Output,
+    },
     report::{describe::no_result, simulate::SimulationSummary, style::Style},
     sim::{RootSearch, Simulation},
     trace::{EventCounts, Layout, Recorder},

@@ -1,6 +1,6 @@
 //! Finds the submissions that the arguments of `grade` mean.
 use crate::{
-    cli::{console, grading::GradeArguments, input},
+    cli::{arguments::grade::GradeArguments, console, input},
     files::{Folder, Identity},
     suite::{OneFile, PassedOver, Submission, config::BuildStep, names},
 };

@@ -5,8 +5,8 @@ use super::{
 };
 use crate::{
     cli::{
+        arguments::grade::{SuiteCheckArguments, SuiteCommand, SuiteInitArguments, SuiteListArguments},
         console,
-        grading::{SuiteCheckArguments, SuiteCommand, SuiteInitArguments, SuiteListArguments},
         output::Output,
     },
     judge::fair::borderline,

@@ -8,7 +8,7 @@ use super::{
     submissions::distinct_names,
 };
 use crate::{
-    cli::{console, grading::GradeArguments as Arguments, input::unpacked, selection::Selection},
+    cli::{arguments::grade::GradeArguments as Arguments, console, input::unpacked, selection::Selection},
     files::{FileError, Folder},
     report::{foreign::one_line, number::counted},
     suite::{

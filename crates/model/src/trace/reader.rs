@@ -20,7 +20,7 @@ pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 ///
 /// // Two records of one particle without lists: 32 bytes each.
 /// let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 1 };
-/// let mut reader = Reader::of_slice(&[0; 64], layout);
+/// let mut reader = Reader::from_slice(&[0; 64], layout);
 /// let mut frame = Frame::default();
 /// let mut frames = 0;
 /// while reader.next(&mut frame)? {

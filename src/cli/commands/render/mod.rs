@@ -5,9 +5,9 @@ mod motion;
 use crate::files::Identity;
 use crate::{
     cli::{
+        arguments::draw::{RenderArguments, RenderFormat},
         console, exit, input,
         output::{Folder, Output, has_extension},
-        pictures::{RenderArguments, RenderFormat},
     },
     render::{
         Extent, Painter, PictureOptions, Raster, Size,

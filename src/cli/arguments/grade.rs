@@ -47,114 +47,114 @@ With --output, the folder keeps results as they come. (Several submissions alway
 An interrupted grading goes on where it stopped. A scene is run again only if the program, the scene or the rules \
 changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, scenes.csv, \
 class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part are no grade.")]
-pub(super) struct GradeArguments {
+pub(in crate::cli) struct GradeArguments {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
-    pub(super) programs: Vec<PathBuf>,
+    pub(in crate::cli) programs: Vec<PathBuf>,
     #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
-    pub(super) suite: String,
+    pub(in crate::cli) suite: String,
     /// The rule books; by default the suite's.
     #[arg(long, value_parser = rules())]
-    pub(super) rules: Option<Rules>,
+    pub(in crate::cli) rules: Option<Rules>,
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
-    pub(super) output: Option<PathBuf>,
+    pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
-    pub(super) format: Vec<String>,
+    pub(in crate::cli) format: Vec<String>,
     /// The reader of the reports. Staff is told everything; students are told what the suite's hints let them know,
     /// and their pages leave out groups that it hides. The output folder gets pages of both kinds; those to hand out
     /// are in students/.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
-    pub(super) reader: Audience,
+    pub(in crate::cli) reader: Audience,
     /// Number of runs at one time. One per core by default.
     #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
-    pub(super) jobs: Option<NonZeroUsize>,
+    pub(in crate::cli) jobs: Option<NonZeroUsize>,
     /// Only scenes of these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
     #[arg(long, value_name = "GLOB")]
-    pub(super) scene: Vec<String>,
+    pub(in crate::cli) scene: Vec<String>,
     /// Only scenes that were not accepted when the same submissions were graded last.
     #[arg(long)]
-    pub(super) failed: bool,
+    pub(in crate::cli) failed: bool,
     /// How much reports tell their reader. By default staff is told everything, and students what the suite says.
     /// `full` may give a formula away.
     #[arg(long, value_parser = hints(), value_name = "LEVEL")]
-    pub(super) hints: Option<Hints>,
+    pub(in crate::cli) hints: Option<Hints>,
     /// Make the smallest scene on which a program is still wrong, for up to four causes of each submission, with two
     /// seconds of processor time for each.
     #[arg(long)]
-    pub(super) smallest: bool,
+    pub(in crate::cli) smallest: bool,
     /// Keep the traces of scenes that are not accepted, in the output folder.
     #[arg(long)]
-    pub(super) keep_traces: bool,
+    pub(in crate::cli) keep_traces: bool,
     /// Write how far it is into a file, such as `3/85`: scenes with a verdict, and all. Scenes that the reader does not
     /// see do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
-    pub(super) progress: Option<PathBuf>,
+    pub(in crate::cli) progress: Option<PathBuf>,
     /// Beside reports for students, write the page that tells staff everything.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
-    pub(super) staff_page: Option<PathBuf>,
+    pub(in crate::cli) staff_page: Option<PathBuf>,
     /// Beside reports for students, write the page that they see when hidden groups are published, if there are any.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
-    pub(super) published_page: Option<PathBuf>,
+    pub(in crate::cli) published_page: Option<PathBuf>,
     /// Keep hidden groups in reports for students, because a platform that hides them itself asks for the reports.
     #[arg(long, env = "FOSSSIM_PLATFORM_HIDES")]
-    pub(super) platform_hides: bool,
+    pub(in crate::cli) platform_hides: bool,
     /// Show a line per submission only.
     #[arg(short, long, conflicts_with = "verbose")]
-    pub(super) quiet: bool,
+    pub(in crate::cli) quiet: bool,
     /// Show every scene of every submission, accepted scenes included.
     #[arg(short, long)]
-    pub(super) verbose: bool,
+    pub(in crate::cli) verbose: bool,
     /// The program's name in the folder of a submission.
     #[arg(long, value_name = "NAME", default_value = "FOSSSim")]
-    pub(super) program: String,
+    pub(in crate::cli) program: String,
     /// A folder is one submission, not a folder of submissions.
     #[arg(long)]
-    pub(super) single: bool,
+    pub(in crate::cli) single: bool,
     /// An earlier grading, to tell what became right and what broke since: its output folder, its grades.jsonl, or
     /// what --format json wrote.
     #[arg(long, value_name = "OLD")]
-    pub(super) compare: Option<PathBuf>,
+    pub(in crate::cli) compare: Option<PathBuf>,
     /// Forget earlier results.
     #[arg(long)]
-    pub(super) fresh: bool,
+    pub(in crate::cli) fresh: bool,
     /// Stop at a submission's first scene that is not accepted: its other scenes are not run, so that it has no points.
     #[arg(long)]
-    pub(super) fail_fast: bool,
+    pub(in crate::cli) fail_fast: bool,
     /// Compare with the recorded traces instead of simulating from the submission's states. Everything after the first
     /// wrong step then differs.
     #[arg(long)]
-    pub(super) recorded: bool,
+    pub(in crate::cli) recorded: bool,
     /// Grade again whenever the program changes, until interrupted.
     #[arg(long)]
-    pub(super) watch: bool,
+    pub(in crate::cli) watch: bool,
     /// Grade only the I-th of N parts of the submissions, as one machine of several; `merge` joins the parts. Results
     /// go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
-    pub(super) shard: Option<ShardArgument>,
+    pub(in crate::cli) shard: Option<ShardArgument>,
     /// Print at the end where the processor time went: programs, sandbox, judging, explaining, reports.
     #[arg(long, conflicts_with_all = ["watch", "traces"])]
-    pub(super) timings: bool,
+    pub(in crate::cli) timings: bool,
     /// Judge traces that exist already, and run no program. Every path is a folder with Group/name.bin, or name.bin,
     /// for each scene.
     #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single", "smallest"])]
-    pub(super) traces: bool,
+    pub(in crate::cli) traces: bool,
     /// Run programs even if required layers of the sandbox are missing. The other layers stay up, and every report
     /// names the missing ones.
     #[arg(long)]
-    pub(super) unsafe_no_sandbox: bool,
+    pub(in crate::cli) unsafe_no_sandbox: bool,
 }
 
 /// A grading has no more shards.
-pub(super) const MOST_SHARDS: usize = 10_000;
+pub(in crate::cli) const MOST_SHARDS: usize = 10_000;
 
 /// A part of the submissions: the `number`-th of `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct ShardArgument {
+pub(in crate::cli) struct ShardArgument {
     /// The number of this part, from 1.
-    pub(super) number: usize,
+    pub(in crate::cli) number: usize,
     /// The number of parts.
-    pub(super) of: usize,
+    pub(in crate::cli) of: usize,
 }
 
 impl FromStr for ShardArgument {
@@ -177,28 +177,28 @@ Example:
   fosssim-oracle merge grades
 
 All shards of one grading have to be there, each once. The exit code is that of the grading.")]
-pub(super) struct MergeArguments {
+pub(in crate::cli) struct MergeArguments {
     /// Folders of shards, or folders that hold them.
     #[arg(required = true)]
-    pub(super) folders: Vec<PathBuf>,
+    pub(in crate::cli) folders: Vec<PathBuf>,
     /// The folder for the results. By default the folder that holds the shards, if you name only one.
     #[arg(short, long, value_name = "DIR")]
-    pub(super) output: Option<PathBuf>,
+    pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
-    pub(super) format: Vec<String>,
+    pub(in crate::cli) format: Vec<String>,
     /// The reader of HTML pages. Pages for students go to students/, beside those for staff.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
-    pub(super) reader: Audience,
+    pub(in crate::cli) reader: Audience,
     /// Show a line per submission only.
     #[arg(short, long)]
-    pub(super) quiet: bool,
+    pub(in crate::cli) quiet: bool,
 }
 
 #[derive(Debug, Subcommand)]
 #[command(after_help = "\
 Example:
   fosssim-oracle suite init --output course.toml && fosssim-oracle suite check course.toml")]
-pub(super) enum SuiteCommand {
+pub(in crate::cli) enum SuiteCommand {
     Init(SuiteInitArguments),
     Check(SuiteCheckArguments),
     List(SuiteListArguments),
@@ -209,13 +209,13 @@ pub(super) enum SuiteCommand {
 #[command(after_help = "\
 Example:
   fosssim-oracle suite init --output course.toml")]
-pub(super) struct SuiteInitArguments {
+pub(in crate::cli) struct SuiteInitArguments {
     #[arg(help = help_of_built_in())]
-    pub(super) name: Option<String>,
+    pub(in crate::cli) name: Option<String>,
 
     /// Where to write it, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
+    pub(in crate::cli) output: Option<PathBuf>,
 }
 
 /// Checks a suite: its faults, its scenes and points, and the decisions that depend on round-off.
@@ -224,15 +224,15 @@ pub(super) struct SuiteInitArguments {
 Example:
   fosssim-oracle suite check course.toml
   fosssim-oracle suite check t1m3 --mistakes")]
-pub(super) struct SuiteCheckArguments {
+pub(in crate::cli) struct SuiteCheckArguments {
     /// The suite: a file, or one that comes with the program.
-    pub(super) suite: String,
+    pub(in crate::cli) suite: String,
     /// Also list the pairs of properties that no step of its scenes has.
     #[arg(long)]
-    pub(super) missing: bool,
+    pub(in crate::cli) missing: bool,
     /// Also list the known mistakes that no scene shows, part by part. Takes some seconds.
     #[arg(long)]
-    pub(super) mistakes: bool,
+    pub(in crate::cli) mistakes: bool,
 }
 
 /// Lists the suites that come with the program; the first one is the default.
@@ -240,10 +240,10 @@ pub(super) struct SuiteCheckArguments {
 #[command(after_help = "\
 Example:
   fosssim-oracle suite list --format json")]
-pub(super) struct SuiteListArguments {
+pub(in crate::cli) struct SuiteListArguments {
     /// How the list is written.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = TextOrJson::Text)]
-    pub(super) format: TextOrJson,
+    pub(in crate::cli) format: TextOrJson,
 }
 
 #[derive(Debug, Args)]
@@ -251,39 +251,39 @@ pub(super) struct SuiteListArguments {
 Example:
   fosssim-oracle demo
   fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
-pub(super) struct DemoArguments {
+pub(in crate::cli) struct DemoArguments {
     /// The sample program; by default fosssim-sample beside this program.
     #[arg(long, value_name = "PROGRAM")]
-    pub(super) sample: Option<PathBuf>,
+    pub(in crate::cli) sample: Option<PathBuf>,
     /// The mistake of the wrong sample, or several, separated by commas; fosssim-sample --list lists them.
     #[arg(long, value_name = "ID")]
-    pub(super) mistake: Option<String>,
+    pub(in crate::cli) mistake: Option<String>,
     /// Where to write the HTML report on the wrong sample.
     #[arg(short, long, value_name = "FILE", default_value = "fosssim-demo.html")]
-    pub(super) output: PathBuf,
+    pub(in crate::cli) output: PathBuf,
     /// Run nothing; write the wrong sample as a program of its own, to grade it or to hand it in.
     #[arg(long, value_name = "FILE")]
-    pub(super) program: Option<PathBuf>,
+    pub(in crate::cli) program: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle doctor")]
-pub(super) struct DoctorArguments {}
+pub(in crate::cli) struct DoctorArguments {}
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle selftest")]
-pub(super) struct SelftestArguments {
+pub(in crate::cli) struct SelftestArguments {
     /// The C compiler that builds the hostile programs.
     #[arg(long, value_name = "PROGRAM", default_value = "cc")]
-    pub(super) compiler: String,
+    pub(in crate::cli) compiler: String,
     /// Tries the attacks as on a host that lacks this layer (its name in `doctor`).
     #[arg(long, value_name = "LAYER", hide = true)]
-    pub(super) without: Vec<String>,
+    pub(in crate::cli) without: Vec<String>,
     /// Tries only attacks whose names hold this text.
     #[arg(long, value_name = "TEXT", hide = true)]
-    pub(super) only: Option<String>,
+    pub(in crate::cli) only: Option<String>,
 }

@@ -1,14 +1,17 @@
 //! The command line as typed. What it means is decided by the commands.
-use super::{
-    grading::{DemoArguments, DoctorArguments, GradeArguments, MergeArguments, SelftestArguments, SuiteCommand},
-    pictures::{DetectArguments, RenderArguments},
-    scenes::SceneCommand,
-    values::{TextOrJson, assignment, at_least_one, explaining, reader, rules},
-};
+pub(super) mod draw;
+pub(super) mod grade;
+pub(super) mod scenes;
+pub(super) mod values;
+
 use crate::{assignments::Assignment, judge::Rules, report::page::Audience, suite::config::Hints};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use clap_complete::Shell;
+use draw::{DetectArguments, RenderArguments};
+use grade::{DemoArguments, DoctorArguments, GradeArguments, MergeArguments, SelftestArguments, SuiteCommand};
+use scenes::SceneCommand;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
+use values::{TextOrJson, assignment, at_least_one, explaining, reader, rules};
 
 /// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
 #[derive(Debug, Parser)]

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Example:
   fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
-pub(super) enum SceneCommand {
+pub(in crate::cli) enum SceneCommand {
     List(SceneListArguments),
     Show(SceneShowArguments),
     Export(SceneExportArguments),
@@ -18,13 +18,13 @@ pub(super) enum SceneCommand {
 Example:
   fosssim-oracle scene list
   fosssim-oracle scene list 'Geometric*'")]
-pub(super) struct SceneListArguments {
+pub(in crate::cli) struct SceneListArguments {
     /// Only scenes of these names, such as 'GeometricTests/*'.
     #[arg(value_name = "GLOB")]
-    pub(super) patterns: Vec<String>,
+    pub(in crate::cli) patterns: Vec<String>,
     /// Names only.
     #[arg(short, long)]
-    pub(super) quiet: bool,
+    pub(in crate::cli) quiet: bool,
 }
 
 /// Prints a scene's XML.
@@ -32,10 +32,10 @@ pub(super) struct SceneListArguments {
 #[command(after_help = "\
 Example:
   fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
-pub(super) struct SceneShowArguments {
+pub(in crate::cli) struct SceneShowArguments {
     /// The scene, Group/name or asset:Group/name.
     #[arg(value_name = "SCENE")]
-    pub(super) name: String,
+    pub(in crate::cli) name: String,
 }
 
 /// Writes scenes as FOLDER/Group/name.xml.
@@ -46,17 +46,17 @@ Example:
   fosssim-oracle scene export 'HolisticTests/*' --output scenes
 
 A file that holds something else is left alone and named, unless --force is given.")]
-pub(super) struct SceneExportArguments {
+pub(in crate::cli) struct SceneExportArguments {
     /// Only scenes of these names, such as 'GeometricTests/*'. Without any, all of them.
     #[arg(value_name = "GLOB")]
-    pub(super) patterns: Vec<String>,
+    pub(in crate::cli) patterns: Vec<String>,
     /// The folder; it is made when there is none.
     #[arg(short, long, value_name = "DIR")]
-    pub(super) output: PathBuf,
+    pub(in crate::cli) output: PathBuf,
     /// Replace files that hold something else.
     #[arg(long)]
-    pub(super) force: bool,
+    pub(in crate::cli) force: bool,
     /// Say nothing but what went wrong.
     #[arg(short, long)]
-    pub(super) quiet: bool,
+    pub(in crate::cli) quiet: bool,
 }

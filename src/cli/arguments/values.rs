@@ -7,13 +7,13 @@ use clap::{
 use std::str::FromStr;
 
 /// Returns a count that can't be zero.
-pub(super) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
+pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it is a whole number, 1 or more")
 }
 
 /// How a report is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum TextOrJson {
+pub(in crate::cli) enum TextOrJson {
     /// For people.
     Text,
     /// For programs; one JSON object.
@@ -31,7 +31,7 @@ fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl Ty
 }
 
 /// Returns the choice of rule books.
-pub(super) fn rules() -> impl TypedValueParser<Value = Rules> {
+pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
     one_of(&[
         ("parity", Rules::Parity, "The original's rules alone"),
         (
@@ -48,7 +48,7 @@ pub(super) fn rules() -> impl TypedValueParser<Value = Rules> {
 }
 
 /// Returns how much reports tell.
-pub(super) fn hints() -> impl TypedValueParser<Value = Hints> {
+pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("none", Hints::None, "The verdict only"),
         ("where", Hints::Where, "Where the first difference is"),
@@ -58,7 +58,7 @@ pub(super) fn hints() -> impl TypedValueParser<Value = Hints> {
 }
 
 /// Returns how much an explanation tells: at least the likely mistake.
-pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
+pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),
         ("full", Hints::Full, "Also the exact terms and an example: this may give the right formula away"),
@@ -66,13 +66,13 @@ pub(super) fn explaining() -> impl TypedValueParser<Value = Hints> {
 }
 
 /// Returns a milestone of the course.
-pub(super) fn assignment() -> impl TypedValueParser<Value = Assignment> {
+pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
         .try_map(|key| Assignment::named(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
 /// Returns the reader of a page.
-pub(super) fn reader() -> impl TypedValueParser<Value = Audience> {
+pub(in crate::cli) fn reader() -> impl TypedValueParser<Value = Audience> {
     one_of(&[
         ("staff", Audience::Staff, "Staff, or a student at their own machine: everything, of every group"),
         ("student", Audience::Student, "The student: what the suite's hints and its visible groups let them know"),

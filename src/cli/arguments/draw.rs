@@ -6,7 +6,7 @@ use std::{num::NonZeroU32, path::PathBuf};
 
 /// The form of the pictures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum RenderFormat {
+pub(in crate::cli) enum RenderFormat {
     /// Pictures as SVG: a folder of them, or one with --step.
     Svg,
     /// Pictures as PNG: a folder of them, or one with --step.
@@ -28,40 +28,40 @@ Example:
 Without a trace the reference's own run is drawn. Bodies have the scene's colors, and the scene's viewport is shown; \
 without one the view holds the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes them, \
 or SVG files as its -m does. Films of more than 1500 pictures are thinned out unless --every says how.")]
-pub(super) struct RenderArguments {
+pub(in crate::cli) struct RenderArguments {
     /// The scene, a file or asset:Group/name.
-    pub(super) scene: PathBuf,
+    pub(in crate::cli) scene: PathBuf,
     /// The trace to draw, a file, - for standard input, or asset:Group/name.
-    pub(super) trace: Option<PathBuf>,
+    pub(in crate::cli) trace: Option<PathBuf>,
     /// A second trace, drawn on top in dashed outlines.
     #[arg(long, value_name = "TRACE")]
-    pub(super) overlay: Option<PathBuf>,
+    pub(in crate::cli) overlay: Option<PathBuf>,
     /// The file or folder to write; the ending of a file's name says what it becomes.
     #[arg(short, long, value_name = "FILE or DIR")]
-    pub(super) output: PathBuf,
+    pub(in crate::cli) output: PathBuf,
     /// The form of the output, if its name does not say it.
     #[arg(long, value_enum)]
-    pub(super) format: Option<RenderFormat>,
+    pub(in crate::cli) format: Option<RenderFormat>,
     /// Width and height in pixels.
     #[arg(long, value_name = "WxH", default_value = "640x480")]
-    pub(super) size: Size,
+    pub(in crate::cli) size: Size,
     /// Pictures per second of a film.
     #[arg(long, value_name = "N", default_value_t = 25)]
-    pub(super) fps: u16,
+    pub(in crate::cli) fps: u16,
     /// Draw every Nth step only.
     #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroU32>)]
-    pub(super) every: Option<NonZeroU32>,
+    pub(in crate::cli) every: Option<NonZeroU32>,
     /// One picture: the state after this step; 0 is the start.
     #[arg(long, value_name = "N", conflicts_with = "every")]
-    pub(super) step: Option<u32>,
+    pub(in crate::cli) step: Option<u32>,
     /// Leave out step and time in the lower left corner.
     #[arg(long)]
-    pub(super) no_label: bool,
+    pub(in crate::cli) no_label: bool,
 }
 
 /// How a detection is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(super) enum DetectFormat {
+pub(in crate::cli) enum DetectFormat {
     /// For people.
     Text,
     /// For programs; one JSON object.
@@ -87,32 +87,32 @@ The first two are the assignment's worked examples. Their overlap polynomials ar
 A pair is one word: pp, pe or ph (particle with particle, edge, half-plane) and its points behind colons: the \
 particles' centers, the particle and the edge's two ends, or the particle, a point on the boundary and the normal. A \
 moving point is X,Y+DX,DY (start and displacement) or X,Y..X,Y (start and end).")]
-pub(super) struct DetectArguments {
+pub(in crate::cli) struct DetectArguments {
     /// The kind of pair (pp, pe, ph) and its points.
     #[arg(value_name = "KIND:POINTS")]
-    pub(super) word: Option<String>,
+    pub(in crate::cli) word: Option<String>,
     /// The radii of the two objects; of a particle and a half-plane, the particle's.
     #[arg(long, value_name = "R,R", allow_hyphen_values = true)]
-    pub(super) radii: Option<String>,
+    pub(in crate::cli) radii: Option<String>,
     /// Look at a pair of this scene instead.
     #[arg(long, value_name = "SCENE", requires = "step", requires = "pair", conflicts_with_all = ["word", "radii"])]
-    pub(super) scene: Option<PathBuf>,
+    pub(in crate::cli) scene: Option<PathBuf>,
     /// The trace that gives the states; by default the reference's run.
     #[arg(long, value_name = "TRACE", requires = "scene")]
-    pub(super) trace: Option<PathBuf>,
+    pub(in crate::cli) trace: Option<PathBuf>,
     /// The step, from 1.
     #[arg(long, value_name = "N", requires = "scene")]
-    pub(super) step: Option<u32>,
+    pub(in crate::cli) step: Option<u32>,
     /// The pair: pp:I,J, pe:I,J or ph:I,J with the indices of the scene.
     #[arg(long, value_name = "KIND:I,J", requires = "scene")]
-    pub(super) pair: Option<String>,
+    pub(in crate::cli) pair: Option<String>,
     /// The detection pass of the step, from 1.
     #[arg(long, value_name = "N", requires = "scene", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    pub(super) pass: u32,
+    pub(in crate::cli) pass: u32,
     /// How the answer is written.
     #[arg(long, value_enum, default_value_t = DetectFormat::Text)]
-    pub(super) format: DetectFormat,
+    pub(in crate::cli) format: DetectFormat,
     /// Where to write it, instead of to standard output.
     #[arg(short, long, value_name = "FILE")]
-    pub(super) output: Option<PathBuf>,
+    pub(in crate::cli) output: Option<PathBuf>,
 }
