@@ -12,13 +12,13 @@ pub use fosssim_files as files;
 
 pub use fosssim_model::{assignments, scene, sim, trace};
 
-pub use fosssim_mistakes::student;
-
 pub use fosssim_judge as judge;
 
 pub use fosssim_original as original;
 
 pub use fosssim_sandbox as sandbox;
+
+pub use fosssim_student as student;
 
 pub use fosssim_mistakes::{diagnose, together};
 

@@ -1,11 +1,11 @@
 use super::*;
 use fosssim_judge::{Book, Outcome, replay};
-use fosssim_mistakes::student::{self, Student};
 use fosssim_model::{
     scene::{Scene, original},
     sim::{Pair, PairKind, State},
     trace::{Layout, PolynomialLog},
 };
+use fosssim_student::{self as student, Student};
 
 #[expect(clippy::disallowed_methods, reason = "the scenes that come with the program")]
 fn asset(name: &str) -> Scene {

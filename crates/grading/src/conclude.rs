@@ -261,8 +261,8 @@ pub(super) fn beginning(printed: &[u8], most: usize) -> String {
 mod tests {
     use super::*;
     use fosssim_judge::replay;
-    use fosssim_mistakes::student::{self, Mistake, Student};
     use fosssim_model::scene::original;
+    use fosssim_student::{self as student, Mistake, Student};
     use fosssim_testing::scenes;
 
     /// Explaining takes as long as judging many traces: nobody asks for what is not told.

@@ -1,4 +1,5 @@
-//! Known mistakes and how they are found again: [`student`] makes them, [`diagnose`] names them.
+//! The likely mistake behind a wrong trace: [`diagnose`] names what a program of [`fosssim_student`] makes, and
+//! [`together`] says what the scenes of one submission show.
 //!
 //! ```
 //! use fosssim_mistakes::diagnose;
@@ -21,11 +22,5 @@
 //! ```
 #![forbid(unsafe_code)]
 
-pub mod plain;
-
-pub mod assignments;
-
-pub mod student;
-pub mod together;
-
 pub mod diagnose;
+pub mod together;

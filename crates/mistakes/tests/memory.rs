@@ -1,10 +1,8 @@
 //! How much memory it takes to explain a small trace of a large scene.
-use fosssim_mistakes::{
-    diagnose::explain,
-    student::{self, Student},
-};
+use fosssim_mistakes::diagnose::explain;
 use fosssim_model::scene::{Collision, CollisionDetection, Display, Edge, Integrator, Particle, Scene};
 use fosssim_num::vector::Vec2;
+use fosssim_student::{self as student, Student};
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     sync::atomic::{AtomicUsize, Ordering::Relaxed},

@@ -171,15 +171,18 @@ pub(crate) mod tests {
     use super::*;
     use fosssim_findings::Hints;
     use fosssim_judge::Role;
-    use fosssim_mistakes::together::told::cut;
-    use fosssim_mistakes::{
-        assignments::t2m2::{Input, Reading, Subject},
-        diagnose::{Detail, ExamplePlace, OfPolynomials, PolynomialDetail, Weight, explain, formula_in},
-        student::{self, CATALOGUE, RowKind, Student, find},
+    use fosssim_mistakes::diagnose::{
+        Detail, ExamplePlace, OfPolynomials, PolynomialDetail, Weight, explain, formula_in,
     };
+    use fosssim_mistakes::together::told::cut;
     use fosssim_model::{
         scene::original,
         sim::{Pair, PairKind},
+    };
+    use fosssim_student::{
+        self as student, CATALOGUE, RowKind, Student,
+        assignments::t2m2::{Input, Reading, Subject},
+        find,
     };
     use fosssim_testing::scenes;
 

@@ -8,7 +8,7 @@
 //! It runs no program and reads no clock: its caller does, and says with each answer whether to go on.
 //!
 //! ```
-//! use fosssim_mistakes::student::{self, Mistake, Student};
+//! use fosssim_student::{self as student, Mistake, Student};
 //! use fosssim_model::{assignments::Assignment, scene};
 //! use fosssim_shrink::{Observation, Reducer, WrongReason, beginnings};
 //!

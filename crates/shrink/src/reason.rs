@@ -2,11 +2,9 @@
 use fosssim_ended::RunEnd;
 use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::FailureKind};
 use fosssim_judge::replay::{Options, judge};
-use fosssim_mistakes::{
-    diagnose::{self, is_named_in, shows},
-    student::find,
-};
+use fosssim_mistakes::diagnose::{self, is_named_in, shows};
 use fosssim_model::{scene::Scene, sim::PairKind};
+use fosssim_student::find;
 
 /// A difference is plain if it is at least this part of the value: more than the round-off of any program.
 const PLAIN: f64 = 1e-6;

@@ -1,12 +1,9 @@
 use super::*;
-use fosssim_mistakes::{
-    assignments::probe_scenes,
-    student::{Student, find, trace_within},
-};
 use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
+use fosssim_student::{Student, assignments::probe_scenes, find, trace_within};
 
 /// Returns what the simulator with mistakes makes of a scene.
 fn run(scene: &Scene, student: Student) -> Observation {

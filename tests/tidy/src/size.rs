@@ -7,7 +7,7 @@ use std::{
 
 /// The most lines of code of each crate, and of the program (`src`), in hundreds: without tests, comments and blank
 /// lines. A crate that is not here may have none.
-const HUNDREDS: [(&str, usize); 21] = [
+const HUNDREDS: [(&str, usize); 22] = [
     ("browser", 10),
     ("build.rs", 1),
     ("ended", 2),
@@ -23,7 +23,7 @@ const HUNDREDS: [(&str, usize); 21] = [
     ("judge", 45),
     ("lab", 15),
     // The worth of a mistake, and the smallest scenes that students see; nothing was removed for them here.
-    ("mistakes", 121),
+    ("mistakes", 63),
     ("model", 90),
     ("num", 37),
     ("original", 9),
@@ -39,6 +39,8 @@ const HUNDREDS: [(&str, usize); 21] = [
     // The command `shrink`.
     // Defaults of a folder, the earlier grading and gzip; the comparison of --watch went.
     ("src", 64),
+    // Came out of `mistakes`.
+    ("student", 59),
 ];
 
 /// Whether a line is an attribute of an item for tests.

@@ -10,7 +10,7 @@ use super::{
     naming::{alternatives, as_row},
     polynomial::form_claim,
 };
-use crate::student::find;
+use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// An explanation of a trace, and the words that would do as well, each with whether it explains all of it.

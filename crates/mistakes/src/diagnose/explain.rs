@@ -8,10 +8,6 @@ use super::{
     sampling::{KeptStep, Source, TraceSamples, sample_trace},
     stages,
 };
-use crate::{
-    assignments::t2m2::Subject,
-    student::{Area, Row, find},
-};
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::{
     assignments::Assignment,
@@ -19,6 +15,7 @@ use fosssim_model::{
     sim::{PairKind, pairs},
     trace::Layout,
 };
+use fosssim_student::{Area, Row, assignments::t2m2::Subject, find};
 
 /// Scenes with more pairs than this are not explained where steps log polynomials: a step of the reference, which
 /// explanations keep whole, takes some hundred bytes a pair. Where numbers end is told all the same.

@@ -10,11 +10,8 @@ use super::{
     naming::{as_row, is_named_in},
     near,
 };
-use crate::{
-    assignments::t2m2::Subject,
-    student::{Area, CATALOGUE, Mistake, Row, find},
-};
 use fosssim_model::sim::PairKind;
+use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The greatest number of mistakes that are told of a program, besides stages that are still empty.

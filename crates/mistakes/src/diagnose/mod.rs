@@ -18,7 +18,6 @@ mod settled;
 mod stages;
 mod written;
 
-pub use crate::{assignments::probe_scenes, plain::formula_in};
 pub use explain::{explain, explain_kept};
 pub use fosssim_findings::explanation::{
     About, Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
@@ -28,6 +27,7 @@ pub use fosssim_findings::explanation::{
     WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{about, fault, guess};
+pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
 pub use heads::several;
 pub use known::{can_show, known, shows};
 pub use naming::is_named_in;

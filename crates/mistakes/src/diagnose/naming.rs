@@ -1,7 +1,7 @@
 //! Whether explanations speak of the same mistake.
 use super::about::{About, OfPolynomials};
-use crate::student::{Row, all_rows, find};
 use fosssim_findings::explanation::{Detail, Explanation};
+use fosssim_student::{Row, all_rows, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns the explanation of the same steps by this known mistake instead.

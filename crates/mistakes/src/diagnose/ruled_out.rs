@@ -3,8 +3,8 @@ use super::{
     Explanation, about::About, heads::several, known::shows_within, naming::alternatives, not_finite::find_in_trace,
     sampling::Source, written::is_written,
 };
-use crate::student::{Area, Student, find, trace_within};
 use fosssim_model::{assignments::Assignment, scene::Scene};
+use fosssim_student::{Area, Student, find, trace_within};
 use std::{cell::Cell, collections::BTreeMap};
 
 /// The greatest number of traces in which it is asked whether a mistake makes numbers end.

@@ -1,6 +1,6 @@
 //! One trace's own explanations, in the light of what all traces of its program say together.
 use super::{About, Explanation, WrongPairs, is_named_in, naming::as_row};
-use crate::student::find;
+use fosssim_student::find;
 
 /// The explanations of one trace, once all traces of its program have been heard.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,9 +1,9 @@
 //! Which mistakes a student of a milestone can make: those in the parts that the student writes.
-use crate::student::{Area, Mistake, Row, StepMistake, Term};
 use fosssim_model::{
     assignments::{Assignment, Part},
     scene::Scene,
 };
+use fosssim_student::{Area, Mistake, Row, StepMistake, Term};
 
 /// Returns whether a student of this milestone writes the code in which the mistake is made, or hands in its file; what
 /// is written to a trace, and how a program ends, may be anybody's.
@@ -56,7 +56,7 @@ pub fn milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::student::{all_rows, find};
+    use fosssim_student::{all_rows, find};
 
     #[test]
     fn only_the_students_own_code_is_accused() {

@@ -1,12 +1,12 @@
 //! The part of a result that hints let a reader know. It is cut here, before a report is made, so that no format can
 //! let the rest out.
-use crate::student::find;
 use fosssim_findings::{
     Hints, SceneResult, Verdict,
     explanation::Explanation,
     result::{Reason, WrongTrace},
     smallest::SmallestScene,
 };
+use fosssim_student::find;
 
 /// Cuts a result down to a level. The verdict, its reason and where the rule books differ stay at all levels, but at
 /// [`Hints::None`] a wrong trace is not told in what it is wrong.
@@ -54,11 +54,7 @@ pub fn cut(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        assignments::probe_scenes,
-        diagnose::{self, About, Example, ExamplePlace, NanStage, NotFinite},
-        student::{self, CATALOGUE, RowKind, Student},
-    };
+    use crate::diagnose::{self, About, Example, ExamplePlace, NanStage, NotFinite};
     use fosssim_findings::{
         Rules,
         disclosure::{DisclosedFinding, Disclosure},
@@ -66,6 +62,7 @@ mod tests {
     };
     use fosssim_judge::replay;
     use fosssim_model::assignments::Assignment;
+    use fosssim_student::{self as student, CATALOGUE, RowKind, Student, assignments::probe_scenes};
 
     fn explanation() -> Explanation {
         let example = Example {

@@ -3,8 +3,9 @@ use super::{Case, WhatIf};
 use crate::{check::Check, words::explanation};
 use fosssim_evidence::{Evidence, ExaminedTrace, Track};
 use fosssim_findings::Hints;
-use fosssim_mistakes::{diagnose::Explanation, student};
+use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::scene::Scene;
+use fosssim_student::{self as student};
 
 impl WhatIf {
     /// Returns the run of the reference with the mistake that is named, beside the trace. Nothing where no step was

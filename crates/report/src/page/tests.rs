@@ -11,10 +11,10 @@ use fosssim_grading::{
 use fosssim_judge::{Outcome, Rules, replay};
 use fosssim_mistakes::{
     diagnose::{self, Explanation},
-    student::{self, Student},
     together::told::cut,
 };
 use fosssim_model::scene::{Scene, original};
+use fosssim_student::{self as student, Student};
 
 fn asset(name: &str) -> Scene {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2").join(name);

@@ -1,16 +1,16 @@
 //! Explanations with every sort of value, and the strangest numbers.
 use super::{Role, pair};
-use fosssim_mistakes::{
-    assignments::t2m2::{Input, Reading, Subject},
-    diagnose::{
-        About, Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
-        Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess,
-        Ratios, StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions, WrongGeometric, WrongMotion,
-        WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
-    },
-    student::Area,
+use fosssim_mistakes::diagnose::{
+    About, Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
+    ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
+    StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::sim::PairKind;
+use fosssim_student::{
+    Area,
+    assignments::t2m2::{Input, Reading, Subject},
+};
 
 /// At least one of every sort.
 pub(super) fn all() -> Vec<Explanation> {

@@ -1,13 +1,11 @@
 //! Records that are missing throughout: then every later record stands for another one, and no step looks right.
 use super::{explain, resimulate::resimulate};
-use crate::{
-    diagnose::{
-        Explanation,
-        sampling::{LoggedNumbers, ROUND_OFF, Scan, StepRecords, first_difference},
-    },
-    student::{Mistake, Row, StepLog, Student, World, find},
+use crate::diagnose::{
+    Explanation,
+    sampling::{LoggedNumbers, ROUND_OFF, Scan, StepRecords, first_difference},
 };
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
+use fosssim_student::{Mistake, Row, StepLog, Student, World, find};
 
 /// Returns the record that this program leaves out, if the trace's beginning is right once that is taken into account.
 pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {

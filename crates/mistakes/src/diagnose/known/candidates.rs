@@ -4,11 +4,9 @@ use super::{
     shown::applicable,
     trials::{Program, Trials},
 };
-use crate::{
-    diagnose::sampling::{KeptStep, Reference, Scan},
-    student::{Edit, Mistake, Row, Slip, StepMistake},
-};
+use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::scene::Scene;
+use fosssim_student::{Edit, Mistake, Row, Slip, StepMistake};
 
 /// Steps on which all rows are tried when none reproduces everything.
 const PARTIAL: usize = 16;

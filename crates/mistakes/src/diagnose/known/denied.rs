@@ -1,13 +1,11 @@
 //! Mistakes that a trace denies, whatever else is wrong with it: its stages are not empty, its zones do not stop.
-use crate::{
-    diagnose::sampling::{KeptStep, LoggedNumbers, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference},
-    student::{CATALOGUE, Mistake, Row},
-};
+use crate::diagnose::sampling::{KeptStep, LoggedNumbers, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, pairs},
 };
 use fosssim_num::vector::{at, length};
+use fosssim_student::{CATALOGUE, Mistake, Row};
 
 /// Keys of mistakes that say that something is never done, where this trace does it: a zone is moved, a pass is made, a
 /// polynomial of the kind is right.

@@ -1,15 +1,13 @@
 //! The first place at which a wrong step differs from the reference.
 use super::resimulate::{ApproachForm, resimulate};
-use crate::{
-    diagnose::{
-        Example, ExamplePlace, StepRecord,
-        sampling::{Capture, KeptStep, ROUND_OFF, Reference, StepDifference, same_impulse},
-    },
-    student::{StepLog, World},
+use crate::diagnose::{
+    Example, ExamplePlace, StepRecord,
+    sampling::{Capture, KeptStep, ROUND_OFF, Reference, StepDifference, same_impulse},
 };
 use fosssim_judge::Role;
 use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
 use fosssim_num::vector::at;
+use fosssim_student::{StepLog, World};
 
 /// Returns the example of a wrong step: where it differs first, what was expected there and what the submission logged.
 pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: ApproachForm, kept: &KeptStep) -> Example {

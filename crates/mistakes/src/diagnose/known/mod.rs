@@ -2,7 +2,7 @@
 //!
 //! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For some of
 //! them, chosen to be diverse, and for some right ones in which something happens, the second simulator
-//! ([`crate::student`]) starts from the submission's own state and makes one mistake. The mistake explains the
+//! ([`fosssim_student`]) starts from the submission's own state and makes one mistake. The mistake explains the
 //! submission when everything that the step logged comes out the same: polynomials up to a positive factor, contacts,
 //! the states in the middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the
 //! same. Correct variants of the catalogue are tried, too, and where one of them reproduces the steps no mistake is
@@ -29,9 +29,9 @@ use super::{
     about::About,
     sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, first_difference, sample_trace},
 };
-use crate::student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use candidates::Candidates;
 use fosssim_model::{scene::Scene, trace::Layout};
+use fosssim_student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use resimulate::{ApproachForm, resimulate};
 use several::SeveralRows;
 

@@ -3,14 +3,12 @@ use super::{
     resimulate::{resimulate, step_work},
     shown::can_show,
 };
-use crate::{
-    diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial},
-    student::{Area, Mistake, StepLog, Student, World, find},
-};
+use crate::diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{RootSearch, Simulation},
 };
+use fosssim_student::{Area, Mistake, StepLog, Student, World, find};
 use std::cell::Cell;
 
 /// Polynomials that may be computed; about a microsecond each.

@@ -1,12 +1,10 @@
 //! Steps of a student's program, from a submission's own state.
-use crate::{
-    diagnose::sampling::{LoggedNumbers, StepRecords},
-    student::{Mistake, Record, State, StepLog, Student, World, step},
-};
+use crate::diagnose::sampling::{LoggedNumbers, StepRecords};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::pairs,
 };
+use fosssim_student::{Mistake, Record, State, StepLog, Student, World, step};
 
 /// The particle-edge approach of a submission, right in either form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -4,11 +4,9 @@
 //! logged. Only a set that reproduces everything, right steps included, and of which no row can be left out, explains
 //! anything.
 use super::{plausibility, resimulate::ApproachForm, shown::applicable, trials::Trials};
-use crate::{
-    diagnose::sampling::{KeptStep, Reference, Scan},
-    student::{Area, Mistake, Row, RowKind},
-};
+use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
+use fosssim_student::{Area, Mistake, Row, RowKind};
 
 /// The greatest number of mistakes in a set, besides empty stages.
 const MOST: usize = 3;

@@ -1,13 +1,11 @@
 //! Which rows of the catalogue a scene can show at all: no others are tried on it.
-use crate::{
-    diagnose::written::{is_written, term},
-    student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows},
-};
+use crate::diagnose::written::{is_written, term};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
     scene::{Collision, Scene},
     sim::{ByKind, pairs},
 };
+use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 
 /// Penalty forces between bodies that are apart are tried on scenes with at most this number of pairs.
 const MOST_APART: usize = 5_000;
@@ -83,11 +81,8 @@ fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{
-        assignments::probe_scenes,
-        student::{Student, trace},
-    };
     use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
+    use fosssim_student::{Student, assignments::probe_scenes, trace};
 
     /// A mistake that is not tried on a scene would leave the right trace of it.
     #[test]

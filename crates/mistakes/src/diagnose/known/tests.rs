@@ -1,16 +1,14 @@
 //! Traces with mistakes, made in memory, and what is said of them.
 use super::{known, shows};
 use crate::diagnose::is_named_in;
-use crate::{
-    diagnose::{About, ExamplePlace, Explanation, explain, several},
-    student::{self, Student, find},
-};
+use crate::diagnose::{About, ExamplePlace, Explanation, explain, several};
 use fosssim_judge::Role;
 use fosssim_model::{
     scene::{Scene, original},
     sim::{Pair, PairKind, State},
     trace::{Frame, Layout, Writer},
 };
+use fosssim_student::{self as student, Student, find};
 
 /// Two balls that meet, an edge that swings about its fixed end, and a half-plane.
 const SCENE: &str = "<scene><duration time=\"1\"/><integrator type=\"symplectic-euler\" dt=\"0.05\"/>\

@@ -1,12 +1,10 @@
 //! Programs with mistakes of the catalogue, tried on kept steps.
 use super::resimulate::{ApproachForm, resimulate, step_work};
-use crate::{
-    diagnose::sampling::{
-        KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
-    },
-    student::{Area, Row, StepLog, Student, World},
+use crate::diagnose::sampling::{
+    KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
 };
 use fosssim_model::scene::Scene;
+use fosssim_student::{Area, Row, StepLog, Student, World};
 use std::cell::Cell;
 
 /// Tries programs, and counts the polynomials that they compute; one takes about a third of a microsecond.

@@ -11,12 +11,12 @@ use super::{
     about::About,
     sampling::{Reference, Scan},
 };
-use crate::student::Area;
 use fosssim_judge::fair::applied;
 use fosssim_model::{
     scene::Scene,
     sim::{Pair, PairKind},
 };
+use fosssim_student::Area;
 use geometry::{Moment, PlacedPair};
 use std::collections::BTreeSet;
 use traits::Variant;

@@ -1,14 +1,11 @@
 //! Searches with mistakes by request, in the scenes of the contest's suite.
 use super::{pair_traits, traits};
-use crate::{
-    diagnose::{About, Explanation, PairCounts, WrongPairs, explain, several},
-    plain::formula_in,
-    student::{Student, find, trace},
-};
+use crate::diagnose::{About, Explanation, PairCounts, WrongPairs, explain, several};
 use fosssim_model::{
     scene::{Collision, Scene, original},
     sim::PairKind,
 };
+use fosssim_student::{Student, find, plain::formula_in, trace};
 use std::{fs, path::Path};
 
 #[expect(clippy::disallowed_methods, reason = "the scenes of the suites belong to a crate above this one")]

@@ -1,10 +1,10 @@
 //! The products that a wrong coefficient may contain: those of the formula's letters, and some that do not belong.
-use crate::assignments::t2m2::{
+use fosssim_num::bounded::BoundedValue;
+use fosssim_student::assignments::t2m2::{
     Inputs, Subject,
     extras::{HALF_PLANE_EXTRAS, extras},
     formulas::{Formula, Letter, product},
 };
-use fosssim_num::bounded::BoundedValue;
 use std::borrow::Cow;
 
 /// A product of letters.

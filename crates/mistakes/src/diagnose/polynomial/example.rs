@@ -1,9 +1,9 @@
 //! The sample that shows a mistake best: wrong, with inputs that are quickly written down, early.
 use super::study::{Case, PolynomialStudy};
-use crate::assignments::t2m2::Input;
 use crate::diagnose::{Example, ExamplePlace, ExampleValue};
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
+use fosssim_student::assignments::t2m2::Input;
 
 fosssim_model::drops_leading!();
 

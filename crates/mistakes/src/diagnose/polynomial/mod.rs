@@ -28,14 +28,14 @@ use super::{
     guess::{CoefficientGuess, Guess, digest},
     sampling::{ROUND_OFF, same_polynomial},
 };
-use crate::assignments::t2m2::{
+use fosssim_model::sim::PairKind;
+use fosssim_student::assignments::t2m2::{
     Subject,
     exchanges::{EXCHANGES, Exchange},
     formulas::readings,
     specials::{SPECIALS, Special},
 };
-use crate::student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
-use fosssim_model::sim::PairKind;
+use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use std::collections::BTreeMap;
 use study::{Candidate, PolynomialStudy};
 

@@ -1,12 +1,12 @@
 //! Right formulas with one wrong letter: scaled, of the wrong sign, or another dot product.
 use super::study::{Candidate, PolynomialStudy};
-use crate::assignments::t2m2::{
+use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Substitute};
+use fosssim_num::bounded::BoundedValue;
+use fosssim_student::assignments::t2m2::{
     Inputs, Reading,
     formulas::{Formula, Letter},
     ingredients::{Ingredient, ingredients},
 };
-use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Substitute};
-use fosssim_num::bounded::BoundedValue;
 
 /// A quantity that is tried in a letter's place.
 enum Trial<'a> {

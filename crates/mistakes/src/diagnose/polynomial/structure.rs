@@ -3,12 +3,12 @@ use super::{
     compare::{expected_at, logged_at, matches},
     study::{Candidate, Case, PolynomialStudy, median, ratio},
 };
-use crate::assignments::t2m2::{Subject, formulas::readings};
 use crate::diagnose::{Guess, ListGuess, PolynomialDetail};
 use fosssim_num::{
     bounded::BoundedValue,
     tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
 };
+use fosssim_student::assignments::t2m2::{Subject, formulas::readings};
 
 fosssim_model::drops_leading!();
 

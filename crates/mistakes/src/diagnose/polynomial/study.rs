@@ -3,13 +3,13 @@ use super::{
     Sample,
     compare::{coefficient_matches, expected_at, fitted_scale, is_right, is_sure, logged_at, matches, scale_fitted_to},
 };
-use crate::assignments::t2m2::{
-    Inputs, Reading, Subject,
-    formulas::{Formula, readings},
-};
 use crate::diagnose::{Guess, PolynomialDetail};
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_num::{bounded::BoundedValue, tolerances::LEADING_COEFFICIENT};
+use fosssim_student::assignments::t2m2::{
+    Inputs, Reading, Subject,
+    formulas::{Formula, readings},
+};
 
 fosssim_model::drops_leading!();
 

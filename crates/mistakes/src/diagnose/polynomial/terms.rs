@@ -5,9 +5,9 @@ use super::{
     sparse::{DesignMatrix, Support},
     study::{Candidate, Case, PolynomialStudy, median, spread},
 };
-use crate::assignments::t2m2::{Reading, formulas::Formula};
 use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
 use fosssim_num::bounded::BoundedValue;
+use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 
 /// The number of wrong samples of a fit, which uses half as many right ones.
 const MOST_ROWS: usize = 240;

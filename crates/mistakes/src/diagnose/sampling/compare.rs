@@ -2,7 +2,6 @@
 //!
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
 //! vectors relative to the size of the numbers around them. NaN equals NaN only.
-use crate::student::{Contact, Record};
 use fosssim_model::{
     scene::{Integrator, Scene},
     sim::State,
@@ -17,6 +16,7 @@ use fosssim_num::{
     },
     vector::Vec2,
 };
+use fosssim_student::{Contact, Record};
 
 fosssim_model::drops_leading!();
 

@@ -1,6 +1,5 @@
 //! Several traces heard together, over made-up lists of what each says.
 use crate::{
-    assignments::t2m2::Subject,
     diagnose::is_named_in,
     diagnose::{
         About, Detail, Explanation, Guess, ListGuess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault,
@@ -8,6 +7,7 @@ use crate::{
     },
 };
 use fosssim_model::sim::PairKind;
+use fosssim_student::assignments::t2m2::Subject;
 
 fn said(key: &str, about: About, counts: (u64, u64), claims: &[&str]) -> Explanation {
     Explanation {

@@ -1,9 +1,9 @@
 //! Programs with several mistakes, asked about on the probe scenes.
 use super::naming::is_in_other_words;
 use super::{About, Explanation, explain, explain_kept, probe_scenes, several};
-use crate::student::{self, Row, Student};
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::assignments::Assignment;
+use fosssim_student::{self as student, Row, Student};
 
 mod heads;
 mod not_finite;

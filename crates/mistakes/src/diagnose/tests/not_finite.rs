@@ -1,14 +1,11 @@
 //! Where numbers end is told with its step and stage, and what is no number accuses of nothing.
-use crate::{
-    assignments::probe_scenes,
-    diagnose::{About, Explanation, NanStage, NotFinite, explain, not_finite::find_in_trace, sampling::Source},
-    student::{self, Student},
-};
+use crate::diagnose::{About, Explanation, NanStage, NotFinite, explain, not_finite::find_in_trace, sampling::Source};
 use fosssim_model::{
     assignments::Assignment,
     scene::{Collision, Scene},
     trace::{Frame, Layout, Lenient, LenientFrame, Writer},
 };
+use fosssim_student::{self as student, Student, assignments::probe_scenes};
 
 fn scene(name: &str) -> Scene {
     probe_scenes(Assignment::T2M2).into_iter().find(|(other, _)| other == name).expect("a probe scene").1

@@ -1,6 +1,4 @@
 //! The probe scenes show what they are for, and a correct program passes on all of them.
-use crate::assignments::probe_scenes;
-use crate::student::{self, Area, CATALOGUE, Mistake, Row, RowKind, Student};
 use fosssim_judge::{
     self as judging,
     fair::{FairVerdict, Judgement},
@@ -11,6 +9,8 @@ use fosssim_model::{
     scene::{Scene, original, read, write},
     sim::{ByKind, Decision, Detection, Observer, PairKind, RootSearch, Simulation},
 };
+use fosssim_student::assignments::probe_scenes;
+use fosssim_student::{self as student, Area, CATALOGUE, Mistake, Row, RowKind, Student};
 
 #[test]
 fn both_readers_give_the_scenes_back() {

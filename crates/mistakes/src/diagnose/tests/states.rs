@@ -1,15 +1,13 @@
 //! Of states that no known mistake explains, the first thing that is wrong is told.
-use crate::{
-    diagnose::{
-        About, ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, Quantity, StageDetail, StageFault,
-        WrongChange, WrongDecisions, explain, several,
-    },
-    student::{self, Student, find},
+use crate::diagnose::{
+    About, ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, Quantity, StageDetail, StageFault,
+    WrongChange, WrongDecisions, explain, several,
 };
 use fosssim_model::{
     scene::{Scene, original},
     sim::PairKind,
 };
+use fosssim_student::{self as student, Student, find};
 
 const FALL: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.1"/>
     <simplegravity fx="0.1" fy="-0.8"/>

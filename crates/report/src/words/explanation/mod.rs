@@ -9,10 +9,8 @@ mod places;
 mod polynomials;
 mod stages;
 
-use fosssim_mistakes::{
-    diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, formula_in},
-    student::{Area, Mistake, Row, StepMistake, find},
-};
+use fosssim_mistakes::diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, formula_in};
+use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 
 pub(crate) use places::place;
 

@@ -1,11 +1,9 @@
 //! Sentences about wrong polynomials.
 use super::{capitalized, letters};
-use fosssim_mistakes::{
-    assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter},
-    diagnose::{
-        CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Substitute, Weight,
-    },
+use fosssim_mistakes::diagnose::{
+    CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Substitute, Weight,
 };
+use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter};
 
 /// Returns the fault of these polynomials.
 pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {

@@ -1,15 +1,13 @@
 //! Sentences about stages of a step that no known mistake explains.
 use super::capitalized;
 use crate::view::key;
-use fosssim_mistakes::{
-    diagnose::{
-        Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail,
-        StageFault, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
-        WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
-    },
-    student::Area,
+use fosssim_mistakes::diagnose::{
+    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail,
+    StageFault, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
+    WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::sim::PairKind;
+use fosssim_student::Area;
 
 /// Returns the fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {

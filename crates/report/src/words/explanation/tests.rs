@@ -1,16 +1,16 @@
 //! Everything that explanations can say.
 use super::*;
-use fosssim_mistakes::{
-    assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
-    diagnose::{
-        Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess,
-        LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail,
-        StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
-        WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
-    },
-    student::all_rows,
+use fosssim_mistakes::diagnose::{
+    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
+    NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
+    Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::sim::PairKind;
+use fosssim_student::{
+    all_rows,
+    assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
+};
 use std::borrow::Cow;
 
 const EDGE: Option<PairKind> = Some(PairKind::ParticleEdge);

@@ -1,20 +1,17 @@
 //! Mistakes of forces, integrators, the penalty force and simple responses, on the scenes of the milestones before and
 //! behind collisions.
-use crate::{
-    assignments::probe_scenes,
-    diagnose::{
-        Explanation, explain,
-        known::{
-            known,
-            shown::{applicable, is_of_states},
-        },
+use crate::diagnose::{
+    Explanation, explain,
+    known::{
+        known,
+        shown::{applicable, is_of_states},
     },
-    student::{self, Row, StepLog, Student, World, find, step},
 };
 use fosssim_model::{
     assignments::Assignment,
     scene::{Scene, original},
 };
+use fosssim_student::{self as student, Row, StepLog, Student, World, assignments::probe_scenes, find, step};
 use std::{collections::BTreeSet, fs, path::Path};
 
 /// Scenes of more bodies take long to be simulated with all mistakes.

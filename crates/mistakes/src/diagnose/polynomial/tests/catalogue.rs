@@ -1,12 +1,12 @@
 //! The students of the catalogue on small random scenes: a mistake is explained by what it is, a correct variant not at
 //! all.
 use super::{Numbers, PairKind, Sample, explain};
-use crate::student::{Area, CATALOGUE, KNOWN_ACCUSED, Object, Row, RowKind, StepLog, Student, World, find, step};
 use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::{Pair, PairMotion, PointMotion},
 };
 use fosssim_num::vector::{Vec2, at};
+use fosssim_student::{Area, CATALOGUE, KNOWN_ACCUSED, Object, Row, RowKind, StepLog, Student, World, find, step};
 
 /// The style of the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -2,11 +2,11 @@
 mod catalogue;
 
 use super::*;
-use crate::assignments::t2m2::{Input, Inputs, Reading, formulas};
 use crate::diagnose::{CoefficientGuess, ExamplePlace, Substitute, Weight};
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::sim::{Pair, PairMotion, PointMotion};
 use fosssim_num::{polynomial::trim, vector::Vec2};
+use fosssim_student::assignments::t2m2::{Input, Inputs, Reading, formulas};
 
 /// Numbers without a pattern, the same in every run.
 struct Numbers(u64);

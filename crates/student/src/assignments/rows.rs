@@ -2,7 +2,7 @@
 //!
 //! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
 //! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
-//! a mistake is made asks [`Student::makes`](crate::student::Student::makes). The rows of detection, responses, zones
+//! a mistake is made asks [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones
 //! and traces are in [`t2m2`](super::t2m2), those of forces, integrators and what follows from them in
 //! [`states`](super::states).
 pub use fosssim_findings::explanation::Area;

@@ -8,7 +8,7 @@ use fosssim_num::{
 
 /// The numbers that go into the formulas, with error bounds, ready to be exchanged by an explanation.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Inputs {
+pub struct Inputs {
     /// Start positions of the particle and the other one or two points; of a half-plane its point and its normal.
     pub x: [BoundedVector; 3],
     /// Displacements likewise; a half-plane has none.
@@ -51,34 +51,34 @@ pub(super) fn root(square: BoundedValue) -> BoundedValue {
 
 /// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
 impl Inputs {
-    pub fn x12(&self) -> BoundedVector {
+    pub(crate) fn x12(&self) -> BoundedVector {
         self.x[0] - self.x[1]
     }
-    pub fn x21(&self) -> BoundedVector {
+    pub(crate) fn x21(&self) -> BoundedVector {
         self.x[1] - self.x[0]
     }
-    pub fn x32(&self) -> BoundedVector {
+    pub(crate) fn x32(&self) -> BoundedVector {
         self.x[2] - self.x[1]
     }
-    pub fn x13(&self) -> BoundedVector {
+    pub(crate) fn x13(&self) -> BoundedVector {
         self.x[0] - self.x[2]
     }
-    pub fn x23(&self) -> BoundedVector {
+    pub(crate) fn x23(&self) -> BoundedVector {
         self.x[1] - self.x[2]
     }
-    pub fn d12(&self) -> BoundedVector {
+    pub(crate) fn d12(&self) -> BoundedVector {
         self.d[0] - self.d[1]
     }
-    pub fn d21(&self) -> BoundedVector {
+    pub(crate) fn d21(&self) -> BoundedVector {
         self.d[1] - self.d[0]
     }
-    pub fn d32(&self) -> BoundedVector {
+    pub(crate) fn d32(&self) -> BoundedVector {
         self.d[2] - self.d[1]
     }
-    pub fn d13(&self) -> BoundedVector {
+    pub(crate) fn d13(&self) -> BoundedVector {
         self.d[0] - self.d[2]
     }
-    pub fn d23(&self) -> BoundedVector {
+    pub(crate) fn d23(&self) -> BoundedVector {
         self.d[1] - self.d[2]
     }
     /// Returns the normal of the half-plane.

@@ -4,7 +4,7 @@
 //! The quartic is `R^2 g - q^2`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
 use fosssim_num::vector::Vec2;
 
-use crate::student::encounter::MovingBody;
+use crate::encounter::MovingBody;
 
 fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x

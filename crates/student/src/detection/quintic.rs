@@ -1,6 +1,6 @@
 //! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
 use super::{MovingBody, factorized};
-use crate::student::{Area, Mistake, author::Student};
+use crate::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ParticleEdge];

@@ -13,7 +13,7 @@ pub struct Special {
     /// The exact form.
     pub detail: &'static str,
     /// The polynomial's coefficients.
-    pub(crate) polynomial: fn(&Inputs) -> Vec<BoundedValue>,
+    pub polynomial: fn(&Inputs) -> Vec<BoundedValue>,
 }
 
 /// Finds the misunderstanding with this key.

@@ -7,7 +7,7 @@ use super::{
     basis, factorized, quintic,
     wide::WideNumber,
 };
-use crate::student::{
+use crate::{
     Area, Mistake,
     author::Student,
     encounter::{MovingBody, alpha},

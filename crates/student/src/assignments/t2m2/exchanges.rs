@@ -12,10 +12,10 @@ pub struct Exchange {
     /// The exact form.
     pub detail: &'static str,
     /// How unlikely it is; see `study`.
-    pub(crate) cost: f64,
+    pub cost: f64,
     kinds: &'static [PairKind],
     /// Makes the exchange.
-    pub(crate) apply: fn(&mut Inputs),
+    pub apply: fn(&mut Inputs),
 }
 
 impl Exchange {

@@ -4,7 +4,7 @@ use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::BoundedVector;
 
 /// A vector that a student may have put into a dot product.
-pub(crate) struct Ingredient {
+pub struct Ingredient {
     /// How a message calls it.
     pub name: &'static str,
     /// The ingredient's value.
@@ -54,7 +54,7 @@ const HALF_PLANE: &[Ingredient] = &[
 ];
 
 /// Returns the vectors that a detection of this kind has at hand.
-pub(crate) const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
+pub const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
     match kind {
         PairKind::ParticleParticle => PARTICLES,
         PairKind::ParticleEdge => EDGE,

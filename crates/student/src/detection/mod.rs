@@ -8,7 +8,7 @@ use fosssim_num::{
     vector::{Vec2, at, length, unit},
 };
 
-use crate::student::{
+use crate::{
     Area, Mistake,
     author::Student,
     encounter::{Encounter, MovingBody, alpha},

@@ -6,7 +6,7 @@ use std::ops::{Add, Div, Mul, Sub};
 
 use fosssim_num::vector::Vec2;
 
-use crate::student::encounter::MovingBody;
+use crate::encounter::MovingBody;
 
 /// The numbers of a program.
 pub trait Number:

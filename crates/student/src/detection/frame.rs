@@ -1,7 +1,7 @@
 //! Correct programs that compute in other coordinates than the scene's: nothing that happens depends on them.
 use fosssim_num::vector::Vec2;
 
-use crate::student::{Area, Mistake, author::Student};
+use crate::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];

@@ -13,13 +13,13 @@ pub struct Letter {
     /// The letter's meaning, in the assignment's notation; empty where the name says it.
     pub meaning: &'static str,
     /// The letter's degree in the displacements.
-    pub(crate) order: u8,
+    pub order: u8,
     /// The letter's value.
-    pub(crate) value: fn(&Inputs) -> BoundedValue,
+    pub value: fn(&Inputs) -> BoundedValue,
 }
 
 /// `weight` times the product of `letters` (indices into the formula's) in the coefficient of `t^power`.
-pub(crate) struct Term {
+pub struct Term {
     /// The power of t.
     pub power: usize,
     /// The factor in front.
@@ -29,7 +29,7 @@ pub(crate) struct Term {
 }
 
 /// One way to write a polynomial down.
-pub(crate) struct Formula {
+pub struct Formula {
     /// The quantities in it.
     pub letters: &'static [Letter],
     /// The formula's terms.
@@ -61,7 +61,7 @@ impl Formula {
 }
 
 /// Returns the product of the letters with these indices.
-pub(crate) fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
+pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     match letters {
         [] => BoundedValue::exact(1.0),
         [first, rest @ ..] => rest.iter().fold(values[*first], |product, &letter| product * values[letter]),
@@ -69,7 +69,7 @@ pub(crate) fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValu
 }
 
 /// Returns the ways to write one polynomial down, all of them right, the assignment's first.
-pub(crate) fn readings(subject: Subject) -> &'static [Formula] {
+pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP,
         Subject::ParticleApproach => PARTICLE_APPROACH,

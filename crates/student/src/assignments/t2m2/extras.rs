@@ -3,7 +3,7 @@ use super::{Inputs, Subject, formulas::Letter, inputs::root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
 /// Letters that do not belong into the formulas of a polynomial, but may stand there.
-pub(crate) fn extras(subject: Subject) -> &'static [Letter] {
+pub fn extras(subject: Subject) -> &'static [Letter] {
     match subject {
         Subject::ParticleOverlap | Subject::ParticleApproach => PARTICLE_EXTRAS,
         Subject::EdgeOverlap => QUARTIC_EXTRAS,
@@ -74,7 +74,8 @@ const ALPHA_EXTRAS: &[Letter] = &[
     letter("x3.x3", 0, |inputs| inputs.x[2].dot(inputs.x[2])),
 ];
 
-pub(crate) const HALF_PLANE_EXTRAS: &[Letter] = &[
+/// Letters that belong to other formulas of a particle and a half-plane.
+pub const HALF_PLANE_EXTRAS: &[Letter] = &[
     letter("|n|", 0, |inputs| length(inputs.normal())),
     letter("r", 0, |inputs| inputs.radii[0]),
     letter("1", 0, |_| BoundedValue::exact(1.0)),

@@ -1,7 +1,7 @@
 //! The last thing that happens to coefficients before the root finder gets them.
 use fosssim_num::polynomial::Polynomial;
 
-use crate::student::{Area, Mistake, author::Student, objects::Object, rounding::single};
+use crate::{Area, Mistake, author::Student, objects::Object, rounding::single};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];

@@ -6,10 +6,12 @@
 //! verdicts come from [`fosssim_model::sim`] alone. It touches no file and no process, and prints nothing; what hostile
 //! programs do besides simulating belongs to the sample program.
 //!
-//! The mathematics is that of `simulation.md` and `collisions.md`. From the rest of the crate it takes what the course
+//! The mathematics is that of `simulation.md` and `collisions.md`. From the crates below it takes what the course
 //! supplies: the scene, the vectors, the linear solver and the root finder.
+#![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+pub mod assignments;
 mod author;
 mod continuous_time;
 mod detection;
@@ -24,6 +26,7 @@ mod integrators;
 mod near_pairs;
 mod objects;
 mod penalty;
+pub mod plain;
 mod record;
 mod refused;
 mod response;

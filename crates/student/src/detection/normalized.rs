@@ -3,8 +3,8 @@
 //! Where a polynomial is zero but for round-off, that makes numbers of ordinary size of it.
 use fosssim_num::vector::Vec2;
 
-use crate::student::encounter::Encounter;
-use crate::student::{Area, Mistake, author::Student};
+use crate::encounter::Encounter;
+use crate::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];

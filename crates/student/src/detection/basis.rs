@@ -1,7 +1,7 @@
 //! Correct programs whose coefficients take a detour: by way of Bernstein's basis, or of values at some times.
 use fosssim_num::vector::Vec2;
 
-use crate::student::encounter::MovingBody;
+use crate::encounter::MovingBody;
 
 /// Returns a power basis list (highest power first) in Bernstein's basis over the step, and back.
 pub fn through_bernstein(list: &[f64]) -> Vec<f64> {

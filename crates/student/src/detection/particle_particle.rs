@@ -7,7 +7,7 @@ use super::{
     basis,
     wide::WideNumber,
 };
-use crate::student::{Area, Mistake, author::Student};
+use crate::{Area, Mistake, author::Student};
 
 /// The parts of the assignment whose mistakes are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
