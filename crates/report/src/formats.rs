@@ -12,9 +12,10 @@ use std::borrow::Cow;
 const OTHERS: &str =
     "points, verdict and likely mistakes are those of the groups shown here; the grade has others, too";
 
-/// A row has the format's name, and whether one document holds the grades of several submissions.
+/// A row has the format's name, whether one document holds the grades of several submissions, and the renderer of these
+/// grades and of the entries that are no submissions.
 macro_rules! formats {
-    ($($(#[$about:meta])+ $format:ident $name:literal $takes_several:literal;)+) => {
+    ($($(#[$about:meta])+ $format:ident $name:literal $takes_several:literal $render:expr;)+) => {
         /// The formats, in the order in which help lists them.
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Format {
@@ -36,30 +37,59 @@ macro_rules! formats {
             pub const fn takes_several(self) -> bool {
                 match self { $(Self::$format => $takes_several,)+ }
             }
+
+            /// Renders the document as [`Format::render`] does, with the entries that are no submissions.
+            #[must_use]
+            pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
+                let render: fn(&[Grade], &[PassedOver]) -> String = match self { $(Self::$format => $render,)+ };
+                render(grades, passed_over)
+            }
         }
     };
 }
 
 formats! {
     /// For people.
-    Text "text" true;
+    Text "text" true
+        |grades, passed_over| {
+            Text::default().render(grades) + &not_graded(grades, class_entries(grades, passed_over), Style::Plain)
+        };
     /// Our own, versioned (`schemas/grade.schema.json`).
-    Json "json" true;
+    Json "json" true |grades, passed_over| json::render(grades, class_entries(grades, passed_over));
     /// JUnit XML (`schemas/junit.xsd`).
-    Junit "junit" true;
+    Junit "junit" true |grades, passed_over| junit::render(grades, class_entries(grades, passed_over));
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope "gradescope" false;
+    Gradescope "gradescope" false |grades, _| first(grades, gradescope::render);
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn "prairielearn" false;
+    Prairielearn "prairielearn" false |grades, _| first(grades, prairielearn::render);
     /// GitHub Actions annotations.
-    Github "github" true;
+    Github "github" true
+        |grades, passed_over| github::annotations(grades) + &github::passed_over(class_entries(grades, passed_over));
     /// A Markdown summary, for GitHub's step summary.
-    Markdown "markdown" true;
+    Markdown "markdown" true
+        |grades, passed_over| {
+            github::summary(grades) + &github::list_of_passed_over(class_entries(grades, passed_over))
+        };
     /// One row per scene, for spreadsheets.
-    Csv "csv" true;
+    Csv "csv" true csv_table::scenes;
     /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
     /// disk.
-    Html "html" false;
+    Html "html" false
+        |grades, _| {
+            first(grades, |grade| {
+                GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html()
+            })
+        };
+}
+
+/// Renders the only grade of a format for one submission.
+fn first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
+    grades.first().map(render).unwrap_or_default()
+}
+
+/// Returns the entries that are no submissions for a report on several: a report on one does not list them.
+fn class_entries<'e>(grades: &[Grade], passed_over: &'e [PassedOver]) -> &'e [PassedOver] {
+    if grades.len() > 1 { passed_over } else { &[] }
 }
 
 impl Format {
@@ -83,26 +113,6 @@ impl Format {
         match names.split_last() {
             Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
             _ => names.concat(),
-        }
-    }
-
-    /// Renders the document as [`Format::render`] does, with the entries that are no submissions.
-    #[must_use]
-    pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
-        let first = |render: &dyn Fn(&Grade) -> String| grades.first().map(render).unwrap_or_default();
-        let others = if grades.len() > 1 { passed_over } else { &[] };
-        match self {
-            Self::Text => Text::default().render(grades) + &not_graded(grades, others, Style::Plain),
-            Self::Json => json::render(grades, others),
-            Self::Junit => junit::render(grades, others),
-            Self::Gradescope => first(&gradescope::render),
-            Self::Prairielearn => first(&prairielearn::render),
-            Self::Github => github::annotations(grades) + &github::passed_over(others),
-            Self::Markdown => github::summary(grades) + &github::list_of_passed_over(others),
-            Self::Csv => csv_table::scenes(grades, passed_over),
-            Self::Html => {
-                first(&|grade| GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html())
-            }
         }
     }
 

@@ -38,6 +38,15 @@ fn assert_harmless(document: &str) {
 }
 
 #[test]
+fn the_page_about_formats_names_every_one() {
+    let page = include_str!("../../../../docs/formats.md");
+    for format in Format::ALL {
+        let row = page.lines().find(|line| line.starts_with(&format!("| `{}` |", format.name()))).expect("a row");
+        assert_eq!(row.ends_with("| yes |"), format.takes_several(), "{row}");
+    }
+}
+
+#[test]
 fn nothing_hostile_gets_through_any_format() {
     for (format, name) in Format::ALL.iter().map(|format| (format, format.name())) {
         for grade in all() {
