@@ -1,10 +1,10 @@
 //! The service: a course's grading server that loses nothing, on SQLite out of the box and on PostgreSQL with any
 //! number of workers. docs/server/internals.md tells how it works.
 
-pub mod access;
 pub mod calendar;
 pub mod cli;
 pub mod db;
+pub mod domain;
 mod grade_file;
 pub mod health;
 pub mod instruments;

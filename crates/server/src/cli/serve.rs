@@ -6,8 +6,8 @@ use super::{
     worker::{LocalWorkers, grader, policy},
 };
 use crate::{
-    access::{App, Options, Passwords, Suites, TransferLimits},
     db::{self, Address, Database},
+    domain::{App, Options, Passwords, Suites, TransferLimits},
     instruments::Instruments,
     ledger,
     lti::{self, Lti},

@@ -1,6 +1,6 @@
 //! Learning platforms, by LTI 1.3 with its three services ("LTI Advantage"): people come from a platform's course to an
 //! assignment, a roster is read, and scores go back. This room knows the platforms' words: messages, keys, tokens,
-//! services. Who may do what by them is `access`'s to say.
+//! services. Who may do what by them is `domain`'s to say.
 //!
 //! Written against the specifications of 1EdTech: LTI Core 1.3 ("LTI"), Security Framework 1.0 ("SEC"), Deep Linking
 //! 2.0 ("DL"), Names and Role Provisioning Services 2.0 ("NRPS"), and Assignment and Grade Services 2.0 ("AGS").

@@ -1,6 +1,6 @@
 //! Sending artifacts: in pieces as they are read, and not at all to who has them.
 use crate::{
-    access::{Member, Transfer},
+    domain::{Member, Transfer},
     problem::Problem,
     store::{Artifact, OpenArtifact},
 };

@@ -1,6 +1,6 @@
 //! The rules for every request: where it may come from, what answers say to browsers, and what is logged.
 use super::{input::ArrivalTime, who};
-use crate::{access::App, problem::Problem};
+use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{MatchedPath, Request, State},
     http::{HeaderMap, HeaderName, HeaderValue, Method, header},

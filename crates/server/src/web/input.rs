@@ -1,5 +1,5 @@
 //! Reading requests, with answers that say what is wrong.
-use crate::{access::App, problem::Problem};
+use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
     http::{HeaderMap, Method, header, request::Parts},

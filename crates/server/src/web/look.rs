@@ -2,7 +2,7 @@
 //! of time and memory, in the sender's turn.
 use super::upload::is_program;
 use crate::{
-    access::{Member, Settings},
+    domain::{Member, Settings},
     problem::{Problem, ensure},
     task::Form,
     worker,

@@ -13,7 +13,7 @@ mod who;
 
 pub use upload::{look_through, receive_form};
 
-use crate::access::App;
+use crate::domain::App;
 use axum::{Extension, Router, extract::DefaultBodyLimit, middleware};
 use axum_client_ip::ClientIpSource;
 use utoipa_axum::router::OpenApiRouter;

@@ -1,6 +1,6 @@
 //! Receiving files: as they come, into a file of the server's own, never whole in memory.
 use crate::{
-    access::{App, is_file_name},
+    domain::{App, is_file_name},
     problem::Problem,
     task::Form,
 };

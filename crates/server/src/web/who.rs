@@ -1,7 +1,7 @@
 //! The roles of requests: a handler says by the type of its argument whom it serves, and is not called for others.
 use super::input::SignedIn;
 use crate::{
-    access::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
+    domain::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
     problem::Problem,
 };
 use axum::{

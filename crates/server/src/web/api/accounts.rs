@@ -1,7 +1,7 @@
 //! Accounts, tokens, and what administrators see.
 use super::super::input::{AddressParts, Body, ListEnd, QueryInput};
 use crate::{
-    access::{Account, Admin, Event, Link, NewToken, Person, Queue, TokenInfo},
+    domain::{Account, Admin, Event, Link, NewToken, Person, Queue, TokenInfo},
     problem::Problem,
     schema::{Slug, Title},
 };

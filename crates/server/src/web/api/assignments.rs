@@ -4,7 +4,7 @@ use super::super::{
     look, upload,
 };
 use crate::{
-    access::{Assignment, AssignmentChange, Member, Settings, Staff, Standing, moment, moment_schema},
+    domain::{Assignment, AssignmentChange, Member, Settings, Staff, Standing, moment, moment_schema},
     problem::{Problem, ensure},
     schema::Title,
     worker,

@@ -1,7 +1,7 @@
 //! Courses and their members.
 use super::super::input::{AddressParts, Body, ListEnd, PlainBody, QueryInput, SeenEvent};
 use crate::{
-    access::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
+    domain::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
     problem::Problem,
     schema::{Slug, Title},
 };

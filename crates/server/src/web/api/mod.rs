@@ -50,7 +50,7 @@ pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
 pub(super) use submissions::{RequestWish, cell, receive};
 
-use crate::access::App;
+use crate::domain::App;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
 /// A router with the operations of each module.

@@ -1,5 +1,5 @@
 //! For the people who run the server.
-use crate::{access::Visitor, problem::Problem};
+use crate::{domain::Visitor, problem::Problem};
 use axum::{
     http::header,
     response::{IntoResponse, Response},

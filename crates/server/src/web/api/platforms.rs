@@ -1,7 +1,7 @@
 //! Learning platforms.
 use super::super::input::{AddressParts, Body, QueryInput};
 use crate::{
-    access::{Admin, RosterRead, RosterWish, ScoreInfo, Staff},
+    domain::{Admin, RosterRead, RosterWish, ScoreInfo, Staff},
     lti::{Platform, PlatformWish},
     problem::Problem,
 };

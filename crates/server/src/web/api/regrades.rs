@@ -1,7 +1,7 @@
 //! Regrades: begun, looked at, applied or discarded.
 use super::super::input::{AddressParts, Body, ListStart, QueryInput, whole_numbers};
 use crate::{
-    access::{Regrade, Settings, Staff},
+    domain::{Regrade, Settings, Staff},
     problem::Problem,
     schema::Title,
 };

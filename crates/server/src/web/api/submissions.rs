@@ -5,7 +5,7 @@ use super::super::{
     look, upload,
 };
 use crate::{
-    access::{History, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
+    domain::{History, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
 };

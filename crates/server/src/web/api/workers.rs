@@ -6,7 +6,7 @@ use super::super::{
     upload,
 };
 use crate::{
-    access::Remote,
+    domain::Remote,
     problem::{Problem, ensure},
     queue::Lease,
     store::{Artifact, Digest},

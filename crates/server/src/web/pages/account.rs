@@ -7,7 +7,7 @@ use super::{
     Page, PageFrame, see, show, text,
 };
 use crate::{
-    access::{CourseOf, Person, TokenInfo},
+    domain::{CourseOf, Person, TokenInfo},
     problem::Problem,
 };
 use askama::Template;

@@ -9,7 +9,7 @@ use super::{
     see, show, text,
 };
 use crate::{
-    access::{Account, Admin, Event, Queue, TokenInfo},
+    domain::{Account, Admin, Event, Queue, TokenInfo},
     lti::Platform,
     problem::Problem,
 };

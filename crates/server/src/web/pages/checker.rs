@@ -1,6 +1,6 @@
 //! The page that checks traces in a browser. It is the grader's, and holds nothing of anybody: all who know
 //! the address may have it.
-use crate::{access::App, problem::Problem};
+use crate::{domain::App, problem::Problem};
 use axum::{
     extract::State,
     http::{HeaderValue, header},

@@ -4,7 +4,7 @@ use super::{
     Page, PageFrame, see, show, text,
 };
 use crate::{
-    access::{Assignment, AssignmentChange, Event, Member, MemberInfo, Overview, Queue, Staff, Submission},
+    domain::{Assignment, AssignmentChange, Event, Member, MemberInfo, Overview, Queue, Staff, Submission},
     problem::Problem,
 };
 use askama::Template;

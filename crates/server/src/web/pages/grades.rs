@@ -8,7 +8,7 @@ use super::{
     text,
 };
 use crate::{
-    access::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing},
+    domain::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing},
     problem::Problem,
 };
 use askama::Template;
@@ -29,7 +29,7 @@ struct GradesPage {
     after: Option<String>,
     regrades: Vec<Regrade>,
     scores: Vec<ScoreInfo>,
-    requests: Vec<crate::access::Request>,
+    requests: Vec<crate::domain::Request>,
     statistics: Option<Statistics>,
     /// Scenes that somebody on the page has wrong, and who.
     scenes: Vec<(String, Vec<String>)>,

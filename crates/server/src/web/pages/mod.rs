@@ -32,7 +32,7 @@ mod submission;
 mod text;
 
 use crate::{
-    access::{Account, App, Assignment, Member},
+    domain::{Account, App, Assignment, Member},
     problem::Problem,
 };
 use askama::Template;

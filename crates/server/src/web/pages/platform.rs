@@ -7,7 +7,7 @@ use super::{
     Page, PageFrame, see, show, sign_in,
 };
 use crate::{
-    access::{Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
+    domain::{Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
     lti::{PlatformWish, scope},
     problem::Problem,
 };

@@ -4,7 +4,7 @@ use super::{
     see,
 };
 use crate::{
-    access::{Admin, Staff},
+    domain::{Admin, Staff},
     problem::Problem,
 };
 use axum::response::Redirect;

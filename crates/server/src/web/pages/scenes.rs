@@ -1,5 +1,5 @@
 //! The scenes that submissions do not have right, in tables and sentences.
-use crate::access::{AttemptChange, FailedScenes, Standing};
+use crate::domain::{AttemptChange, FailedScenes, Standing};
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// The greatest number of scenes that are named in a sentence.

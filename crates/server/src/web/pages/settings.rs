@@ -7,8 +7,8 @@ use super::{
     Page, PageFrame, see, show, text,
 };
 use crate::{
-    access::{Assignment, AssignmentChange, Settings, Staff},
     calendar,
+    domain::{Assignment, AssignmentChange, Settings, Staff},
     problem::{Problem, ensure},
 };
 use askama::Template;

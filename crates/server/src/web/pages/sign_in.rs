@@ -7,7 +7,7 @@ use super::{
     Page, PageFrame, see, show,
 };
 use crate::{
-    access::{App, NewSecret, Visitor},
+    domain::{App, NewSecret, Visitor},
     problem::Problem,
 };
 use askama::Template;

@@ -1,5 +1,5 @@
 //! How a class did, in numbers.
-use crate::{access::ShortStanding, task::rounded};
+use crate::{domain::ShortStanding, task::rounded};
 use std::collections::BTreeMap;
 
 /// How a class did.

@@ -9,7 +9,7 @@ use super::{
     show, text,
 };
 use crate::{
-    access::{Assignment, AttemptChange, Member, MemberLine, Staff, StudentHistory, Submission},
+    domain::{Assignment, AttemptChange, Member, MemberLine, Staff, StudentHistory, Submission},
     problem::Problem,
 };
 use askama::Template;

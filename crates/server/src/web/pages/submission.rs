@@ -6,7 +6,7 @@ use super::{
     scenes, see, show, text,
 };
 use crate::{
-    access::{Assignment, History, Member, Staff, Submission},
+    domain::{Assignment, History, Member, Staff, Submission},
     problem::Problem,
     secret,
     worker::{PUBLISHED_PAGE, STAFF_PAGE},

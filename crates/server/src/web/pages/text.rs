@@ -1,7 +1,8 @@
 //! Values as people read them.
 use crate::{
-    access::{RegradeState, Submission},
-    calendar, problem,
+    calendar,
+    domain::{RegradeState, Submission},
+    problem,
     task::rounded,
 };
 

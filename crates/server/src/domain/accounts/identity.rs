@@ -1,0 +1,311 @@
+//! Tokens, sessions and links that sign in. Each is 256 random bits; the database has the digest only.
+use crate::domain::view::Account;
+use crate::{
+    db::{DbError, FromRow, Transaction, from_row},
+    problem::Problem,
+    secret::{hex, random_hex},
+    values,
+};
+use serde::Serialize;
+use sha2::{Digest as _, Sha256};
+use std::fmt;
+use utoipa::ToSchema;
+
+/// How long a session lasts after it was last seen.
+const SESSION: i64 = 14 * 24 * 3600 * 1000;
+
+/// The most sessions of an account: the oldest ends when another one begins.
+const SESSIONS: i64 = 50;
+
+/// How long a link that signs in is good for.
+const LINK: i64 = 7 * 24 * 3600 * 1000;
+
+/// How long after its beginning a session may make further ways in: tokens, a first password.
+const RECENT: i64 = 12 * 3600 * 1000;
+
+/// A session that was not seen for so long is noted again.
+const SEEN_EVERY: i64 = 3600 * 1000;
+
+/// Tokens of people and of workers begin with these: anybody who finds one knows its kind, and so do scanners.
+pub(in crate::domain) const PERSON: &str = "fso_";
+pub(in crate::domain) const WORKER: &str = "fsw_";
+
+/// A secret that was just made: shown once.
+#[derive(Clone, PartialEq, Eq)]
+pub struct NewSecret(String);
+
+impl NewSecret {
+    pub(in crate::domain) fn new(prefix: &str) -> Self {
+        Self(format!("{prefix}{}{}", random_hex(), random_hex()))
+    }
+
+    /// Returns the secret itself, for the one it belongs to.
+    pub fn reveal(&self) -> &str {
+        &self.0
+    }
+
+    pub(in crate::domain) fn digest(&self) -> String {
+        digest(&self.0)
+    }
+}
+
+impl fmt::Debug for NewSecret {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("NewSecret(...)")
+    }
+}
+
+/// A token, without its secret.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct TokenInfo {
+    /// The token's number.
+    pub id: i64,
+    /// The token's name.
+    pub name: String,
+    /// When it was made, in milliseconds since 1970.
+    pub created_at: i64,
+}
+
+from_row! { TokenInfo { id, name, created_at } }
+
+/// A token with its secret, which is shown this once.
+#[derive(Serialize, ToSchema)]
+pub struct NewToken {
+    #[serde(flatten)]
+    pub(in crate::domain) info: TokenInfo,
+    /// The secret itself.
+    pub token: String,
+}
+
+/// A link that signs in once, good for a week.
+#[derive(Serialize, ToSchema)]
+pub struct Link {
+    /// The link; nothing where the account was there before.
+    pub link: Option<String>,
+}
+
+/// How somebody came in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(in crate::domain) enum Way {
+    /// By their password, a learning platform, or a link that the server or an administrator made.
+    Own,
+    /// By a link that a course's staff made, who may have used it themselves.
+    Vouched,
+    /// By this token: the session ends with it.
+    Token(i64),
+}
+
+/// A session as a request shows it.
+#[derive(Debug, Clone)]
+pub(in crate::domain) struct SessionState {
+    /// Whether it was begun by a link that a course's staff made.
+    pub(in crate::domain) is_vouched: bool,
+    /// Whether it was begun by a token.
+    pub(in crate::domain) is_by_token: bool,
+    /// Whether it was begun lately.
+    pub(in crate::domain) is_recent: bool,
+    /// Whether it is to be noted as seen.
+    pub(in crate::domain) is_stale: bool,
+}
+
+/// Returns the digest of a secret, which the database keeps. Random as the secret is, nobody finds it by trying.
+pub(in crate::domain) fn digest(secret: &str) -> String {
+    hex(&Sha256::digest(secret))
+}
+
+/// Returns the owner of the token, and its number.
+pub(in crate::domain) async fn account_of_token(
+    transaction: &mut Transaction,
+    token: &str,
+) -> Result<(Account, i64), Problem> {
+    let statement = "SELECT account.id, account.login, account.name, account.is_admin, token.id AS token FROM token
+        JOIN account ON account.id = token.account
+        WHERE token.digest = ? AND token.revoked_at IS NULL AND account.disabled_at IS NULL";
+    let row = transaction.row(statement, values![digest(token)]).await?;
+    match row {
+        Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
+        None => Err(Problem::unknown_secret("token", "make a new one on the page Account")),
+    }
+}
+
+/// Returns the account of a session. One that a token began ends with the token.
+pub(in crate::domain) async fn account_of_session(
+    transaction: &mut Transaction,
+    session: &str,
+) -> Result<Option<(Account, SessionState)>, Problem> {
+    let statement = "SELECT account.id, account.login, account.name, account.is_admin, session.vouched,
+           session.token, session.created_at, session.seen_at, {now} AS now
+        FROM session JOIN account ON account.id = session.account
+        LEFT JOIN token ON token.id = session.token
+        WHERE session.digest = ? AND session.expires_at > {now} AND account.disabled_at IS NULL
+           AND token.revoked_at IS NULL";
+    let row = transaction.row(statement, values![digest(session)]).await?;
+    let Some(row) = row else { return Ok(None) };
+    let now = row.int("now")?;
+    let seen = SessionState {
+        is_vouched: row.flag("vouched")?,
+        is_by_token: row.maybe_int("token")?.is_some(),
+        is_recent: now - row.int("created_at")? < RECENT,
+        is_stale: now - row.int("seen_at")? > SEEN_EVERY,
+    };
+    Ok(Some((Account::from_row(&row)?, seen)))
+}
+
+/// Lets a session last from now on.
+pub(in crate::domain) async fn session_seen(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
+    let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
+    transaction.execute(statement, values![SESSION, digest(session)]).await.map(drop)
+}
+
+/// Begins a session, whose secret goes into a cookie.
+pub(in crate::domain) async fn begin_session(
+    transaction: &mut Transaction,
+    account: i64,
+    way: Way,
+) -> Result<NewSecret, DbError> {
+    let secret = NewSecret::new("");
+    let token = if let Way::Token(token) = way { Some(token) } else { None };
+    let expired =
+        "DELETE FROM session WHERE digest IN (SELECT digest FROM session WHERE expires_at < {now} {skip locked})";
+    transaction.execute(expired, values![]).await?;
+    let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
+        VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
+    transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
+    let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
+        (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
+    transaction.execute(statement, values![account, account, SESSIONS]).await?;
+    Ok(secret)
+}
+
+/// Ends a session.
+pub(in crate::domain) async fn end_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
+    transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
+}
+
+/// Makes a link that signs in once; earlier ones of the account that were not used are void. Whether it is vouched for
+/// by a course's staff only, `way` says.
+pub(in crate::domain) async fn new_link(
+    transaction: &mut Transaction,
+    account: i64,
+    by: Option<i64>,
+    way: Way,
+) -> Result<NewSecret, DbError> {
+    transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
+    further_link(transaction, account, by, way).await
+}
+
+/// Makes a further sign-in link next to earlier ones.
+pub(in crate::domain) async fn further_link(
+    transaction: &mut Transaction,
+    account: i64,
+    by: Option<i64>,
+    way: Way,
+) -> Result<NewSecret, DbError> {
+    let secret = NewSecret::new("");
+    let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
+        VALUES (?, ?, ?, {now}, {now} + ?, ?)";
+    transaction.execute(statement, values![secret.digest(), account, by, LINK, way == Way::Vouched]).await?;
+    Ok(secret)
+}
+
+/// Returns whether a link would sign somebody in.
+pub(in crate::domain) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
+    let statement = "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}";
+    Ok(transaction.row(statement, values![digest(link)]).await?.is_some())
+}
+
+/// Uses up a link, and says whose it was, and how they come in.
+pub(in crate::domain) async fn use_link(
+    transaction: &mut Transaction,
+    link: &str,
+) -> Result<Option<(i64, Way)>, DbError> {
+    let statement =
+        "UPDATE sign_in_link SET used_at = {now} WHERE digest = ? AND used_at IS NULL AND expires_at > {now}
+        RETURNING account, vouched";
+    let row = transaction.row(statement, values![digest(link)]).await?;
+    let Some(row) = row else { return Ok(None) };
+    let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
+    // Anybody who needs a link has forgotten the password: the next one is set without it.
+    let statement = "UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id";
+    let able = transaction.row(statement, values![account]).await?;
+    Ok(able.map(|_| (account, way)))
+}
+
+/// Ends all sessions of an account.
+pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+    transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await.map(drop)
+}
+
+/// Ends every way into an account: it may do more from now on, or nothing at all.
+pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+    end_sessions(transaction, account).await?;
+    transaction.execute("UPDATE account SET password = NULL, managed_by = NULL WHERE id = ?", values![account]).await?;
+    transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
+    let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
+    transaction.execute(statement, values![account]).await.map(drop)
+}
+
+/// Makes the account its person's own. What was begun or made by links of a course's staff ends, who may have
+/// used these links themselves.
+pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+    transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
+    transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
+    let statement = "DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL";
+    transaction.execute(statement, values![account]).await?;
+    let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND vouched = 1 AND revoked_at IS NULL";
+    transaction.execute(statement, values![account]).await.map(drop)
+}
+
+/// Returns whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
+pub(in crate::domain) async fn is_trusted(transaction: &mut Transaction, account: i64) -> Result<bool, DbError> {
+    let statement = "SELECT is_admin, (SELECT count(*) FROM member
+           WHERE member.account = account.id AND member.role = 'staff') AS staff
+        FROM account WHERE id = ?";
+    let row = transaction.one(statement, values![account]).await?;
+    Ok(row.flag("is_admin")? || row.int("staff")? > 0)
+}
+
+/// Makes a token.
+pub(in crate::domain) async fn new_token(
+    transaction: &mut Transaction,
+    account: Option<i64>,
+    name: &str,
+    by: i64,
+    way: Way,
+) -> Result<NewToken, DbError> {
+    let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
+    let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
+        VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
+    let row = transaction.one(statement, values![account, name, secret.digest(), by, way == Way::Vouched]).await?;
+    Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
+}
+
+/// Returns whether a character has no look of its own, or turns the letters around it.
+pub(in crate::domain) fn is_control(c: char) -> bool {
+    c.is_control()
+        || matches!(c, '\u{ad}' | '\u{115f}' | '\u{1160}' | '\u{180e}' | '\u{200b}'..='\u{200f}'
+            | '\u{202a}'..='\u{202e}' | '\u{2060}'..='\u{206f}' | '\u{3164}' | '\u{feff}' | '\u{ffa0}'
+            | '\u{e0000}'..='\u{e0fff}')
+}
+
+/// Checks a name that people gave to something: shown in pages, logs and tables.
+pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
+    let length = text.chars().count();
+    if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
+        return Err(Problem::invalid(format!(
+            "{what} is 1 to 200 characters long, without invisible characters and spaces at its ends"
+        )));
+    }
+    Ok(())
+}
+
+/// Checks a name that is part of addresses.
+pub(in crate::domain) fn check_slug(what: &str, text: &str) -> Result<(), Problem> {
+    let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
+    if !(1..=60).contains(&text.len()) || !text.chars().all(plain) || text.starts_with(['-', '.', '_']) {
+        return Err(Problem::invalid(format!(
+            "{what} is 1 to 60 small letters, digits, dots, dashes and underscores, and begins with a letter or digit"
+        )));
+    }
+    Ok(())
+}

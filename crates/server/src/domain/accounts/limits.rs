@@ -1,0 +1,181 @@
+//! The shares of one account, one course, and all together in the server: transfers at one time, and bytes that are
+//! kept.
+use crate::domain::{
+    Member, Throttle,
+    accounts::turns::{ArchiveTurn, Turns},
+};
+use crate::{db::Transaction, problem::Problem, values};
+use std::{
+    collections::HashMap,
+    sync::{Arc, Mutex, PoisonError},
+    time::{Duration, Instant},
+};
+use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
+
+/// Up- and downloads of all accounts at one time: each takes a connection, a file and some 100 KiB.
+static OF_ALL: Semaphore = Semaphore::const_new(3000);
+
+/// How long an upload waits for others of the same account.
+const TURN: Duration = Duration::from_secs(30);
+
+/// Archives of an account that may be refused in a minute.
+const REFUSED: u32 = 30;
+
+/// A mebibyte.
+const MIB: u64 = 1 << 20;
+
+/// The limits, and what is being done at the moment.
+#[derive(Debug, Default)]
+pub struct TransferLimits {
+    /// Up- and downloads of one account at one time.
+    pub transfers: usize,
+    /// Bytes of uploads and their reports that are kept: of one person, of one course, of all. 0 for any number.
+    pub student: u64,
+    /// The limit of one course.
+    pub course: u64,
+    /// The limit of the server.
+    pub server: u64,
+    by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
+    turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
+    archives: Turns,
+    refused: Throttle,
+}
+
+/// Leave to transfer something, until it is dropped.
+#[derive(Debug)]
+pub struct Transfer {
+    _of_account: OwnedSemaphorePermit,
+    _of_all: SemaphorePermit<'static>,
+}
+
+impl TransferLimits {
+    /// Limits of these sizes.
+    pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
+        Self { transfers, student, course, server, ..Self::default() }
+    }
+
+    fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
+        let most = self.transfers;
+        let of_account = shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
+        let many = |_| Problem::too_many(format!("an account may have {most} up- and downloads at one time"));
+        let of_account = of_account.map_err(many)?;
+        let of_all = OF_ALL.try_acquire();
+        let of_all = of_all.map_err(|_| Problem::unavailable("too many up- and downloads are under way"))?;
+        Ok(Transfer { _of_account: of_account, _of_all: of_all })
+    }
+
+    /// Waits until nobody else hands in for an account by this server.
+    pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
+        let turn = shared(&self.turns, account, Default::default);
+        let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
+        turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
+    }
+}
+
+/// Returns the thing that the tasks of an account share, while one of them holds it.
+fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
+    let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
+    all.retain(|_, one| Arc::strong_count(one) > 1);
+    all.entry(account).or_insert_with(|| Arc::new(new())).clone()
+}
+
+impl Member {
+    /// Gives leave to send or receive a file.
+    ///
+    /// # Errors
+    /// When the account, or all together, have as many under way as they may.
+    pub fn transfer(&self) -> Result<Transfer, Problem> {
+        self.app.limits.transfer(self.account.id)
+    }
+
+    /// Waits until an archive of theirs may be looked through, which counts as refused until it turns out to be right.
+    ///
+    /// # Errors
+    /// When too many wait, or too many of theirs were refused.
+    pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
+        let turn = self.app.limits.archives.wait(self.account.id).await?;
+        if !self.app.limits.refused.pass(self.account.id, REFUSED, Instant::now()) {
+            return Err(Problem::too_many(format!("more than {REFUSED} archives of yours were refused in a minute")));
+        }
+        Ok(turn)
+    }
+
+    /// Notes that an archive was accepted.
+    pub fn archive_was_right(&self) {
+        self.app.limits.refused.put_back(self.account.id);
+    }
+
+    /// Returns the bytes that are kept of this person, their course and the server, each with the most that may be.
+    async fn shares(&self, transaction: &mut Transaction) -> Result<[RoomShare; 3], Problem> {
+        let limits = &self.app.limits;
+        let statement =
+            "SELECT CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE account = ?), 0) AS {int}) AS student,
+            CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE course = ?), 0) AS {int}) AS course,
+            CAST(coalesce((SELECT sum(bytes) FROM kept_bytes WHERE ? > 0), 0) AS {int}) AS server";
+        let server = i64::try_from(limits.server).unwrap_or(i64::MAX);
+        let row = transaction.one(statement, values![self.account.id, self.course, server]).await?;
+        let kept = |column: &str, most| {
+            row.int(column).map(|bytes| RoomShare { bytes: u64::try_from(bytes).unwrap_or(0), most })
+        };
+        Ok([kept("student", limits.student)?, kept("course", limits.course)?, kept("server", limits.server)?])
+    }
+
+    /// Returns the sentences about the room for uploads: to staff about their course, and to everybody about a share
+    /// that is nearly full.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn told_of_kept(&self) -> Result<Vec<String>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let [student, course, server] = self.shares(&mut transaction).await?;
+        let shares = [("you", student, false), ("this course", course, self.is_staff), ("this server", server, false)];
+        let told = shares.into_iter().filter(|(_, kept, always)| kept.is_nearly_all() || *always);
+        Ok(told.map(|(whose, kept, _)| kept.describe(whose)).collect())
+    }
+
+    /// Checks that this many more bytes may be kept.
+    pub(in crate::domain) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
+        let [student, course, server] = self.shares(transaction).await?;
+        exceeds("all that you handed in, with its reports,", student, size)?;
+        exceeds("all that was handed in in this course, with its reports,", course, size)?;
+        exceeds("all that was handed in here, with its reports,", server, size)
+    }
+}
+
+/// Bytes that are kept, and the most that may be: 0 for any number.
+#[derive(Debug, Clone, Copy)]
+struct RoomShare {
+    bytes: u64,
+    most: u64,
+}
+
+impl RoomShare {
+    /// Returns whether four fifths of it are taken.
+    fn is_nearly_all(self) -> bool {
+        self.most > 0 && self.bytes >= self.most / 5 * 4
+    }
+
+    fn describe(self, whose: &str) -> String {
+        let kept = format!("Uploads and reports kept of {whose}: {} MiB", self.bytes.div_ceil(MIB));
+        match self.most {
+            0 => kept + ".",
+            most if self.is_nearly_all() => {
+                format!("{kept} of {}. When all are taken nothing can be handed in: ask the administrator.", most / MIB)
+            }
+            most => format!("{kept} of {}.", most / MIB),
+        }
+    }
+}
+
+fn exceeds(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) -> Result<(), Problem> {
+    if most == 0 || kept.saturating_add(size) <= most {
+        return Ok(());
+    }
+    let in_mib = |bytes: u64| bytes.div_ceil(MIB);
+    Err(Problem::quota(format!(
+        "{what} takes {} of {} MiB, and this upload has {} MiB",
+        in_mib(kept),
+        in_mib(most),
+        in_mib(size)
+    )))
+}

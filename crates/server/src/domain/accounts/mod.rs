@@ -1,0 +1,7 @@
+//! Accounts: how people sign in, and what shares of the server they have.
+
+pub(super) mod identity;
+pub(super) mod limits;
+pub(super) mod password;
+pub(super) mod throttle;
+pub(super) mod turns;

@@ -1,0 +1,75 @@
+//! How many requests an account may make: a bucket of tokens for each that fills by itself. By account and not by
+//! address: a lecture hall behind one address is many people. Ways in are counted by address, of which one has many.
+use std::{
+    collections::HashMap,
+    hash::{DefaultHasher, Hash, Hasher},
+    net::{IpAddr, Ipv6Addr},
+    sync::{Mutex, PoisonError},
+    time::Instant,
+};
+
+/// With more buckets than this those that are full are thrown away.
+const MANY: usize = 10_000;
+
+/// The buckets.
+#[derive(Debug, Default)]
+pub struct Throttle(Mutex<HashMap<i64, (f64, Instant)>>);
+
+impl Throttle {
+    /// Takes a token from an account's bucket, which holds at most those of a minute; whether there was one.
+    pub(in crate::domain) fn pass(&self, account: i64, per_minute: u32, now: Instant) -> bool {
+        let most = f64::from(per_minute);
+        let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let level = |(level, at): (f64, Instant)| {
+            (level + now.saturating_duration_since(at).as_secs_f64() * most / 60.0).min(most)
+        };
+        if buckets.len() > MANY {
+            buckets.retain(|_, bucket| level(*bucket) < most);
+        }
+        let bucket = buckets.entry(account).or_insert((most, now));
+        let left = level(*bucket);
+        let passes = left >= 1.0;
+        *bucket = (if passes { left - 1.0 } else { left }, now);
+        passes
+    }
+
+    /// Puts a token back: what it was taken for is not to count.
+    pub(in crate::domain) fn put_back(&self, account: i64) {
+        let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((level, _)) = buckets.get_mut(&account) {
+            *level += 1.0;
+        }
+    }
+}
+
+/// Returns the bucket of an address for something. Of the newer addresses everybody has 2^64: the network counts.
+pub(in crate::domain) fn bucket(address: Option<IpAddr>, what: &str) -> i64 {
+    let network = address.map(|address| match address.to_canonical() {
+        IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
+        address @ IpAddr::V4(_) => address,
+    });
+    let mut hasher = DefaultHasher::new();
+    (network, what).hash(&mut hasher);
+    // Accounts have numbers above zero.
+    -hasher.finish().cast_signed().saturating_abs()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::time::Duration;
+
+    #[test]
+    fn a_bucket_empties_and_fills_for_each_account() {
+        let throttle = Throttle::default();
+        let start = Instant::now();
+        let passed = (0..20).filter(|_| throttle.pass(1, 12, start)).count();
+        assert_eq!(passed, 12);
+        assert!(throttle.pass(2, 12, start), "another account has its own");
+        assert!(!throttle.pass(1, 12, start + Duration::from_secs(4)));
+        assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
+        assert!(!throttle.pass(1, 12, start + Duration::from_secs(9)));
+        throttle.put_back(1);
+        assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
+    }
+}

@@ -1,0 +1,155 @@
+//! Turns to have an archive looked through, which may take a processor for seconds. An account has one at a time, and
+//! the one that took least lately goes first: nobody waits for somebody else's bad uploads.
+use crate::problem::Problem;
+use std::{
+    collections::{BTreeMap, HashMap},
+    sync::{Arc, Mutex, MutexGuard, PoisonError},
+    time::{Duration, Instant},
+};
+use tokio::sync::Notify;
+
+/// Archives that are looked through at one time: each may need some 100 MiB, and all of a processor.
+const AT_ONE_TIME: usize = 2;
+
+/// For so long somebody waits for their turn.
+const PATIENCE: Duration = Duration::from_secs(60);
+
+/// The time that an account took counts half after this many seconds.
+const HALF_LIFE: f64 = 60.0;
+
+/// With more accounts than this those that took nothing lately are forgotten.
+const MANY: usize = 10_000;
+
+/// All turns.
+#[derive(Debug, Default, Clone)]
+pub(in crate::domain) struct Turns(Arc<TurnParts>);
+
+#[derive(Debug, Default)]
+struct TurnParts {
+    state: Mutex<TurnState>,
+    changed: Notify,
+}
+
+#[derive(Debug, Default)]
+struct TurnState {
+    /// Accounts that have their turn.
+    running: Vec<i64>,
+    /// Those that wait, by the number of their ticket.
+    waiting: BTreeMap<u64, i64>,
+    next: u64,
+    /// The seconds that accounts took, and when that was counted.
+    taken: HashMap<i64, (f64, Instant)>,
+}
+
+/// A turn, or a place among those who wait, until it is dropped.
+#[derive(Debug)]
+pub struct ArchiveTurn {
+    turns: Turns,
+    account: i64,
+    ticket: u64,
+    began: Option<Instant>,
+}
+
+impl TurnState {
+    fn taken(&self, account: i64, now: Instant) -> f64 {
+        let Some((seconds, at)) = self.taken.get(&account) else { return 0.0 };
+        seconds * 0.5_f64.powf(now.saturating_duration_since(*at).as_secs_f64() / HALF_LIFE)
+    }
+
+    /// Returns the ticket that is next, if anybody may go now.
+    fn first(&self, now: Instant) -> Option<u64> {
+        let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
+        let rank = |(ticket, account): &(&u64, &i64)| (self.taken(**account, now), **ticket);
+        let first = able.min_by(|one, other| rank(one).partial_cmp(&rank(other)).unwrap_or(std::cmp::Ordering::Equal));
+        first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < AT_ONE_TIME)
+    }
+}
+
+impl Turns {
+    fn state(&self) -> MutexGuard<'_, TurnState> {
+        self.0.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Waits for an account's turn.
+    pub(in crate::domain) async fn wait(&self, account: i64) -> Result<ArchiveTurn, Problem> {
+        let ticket = {
+            let mut state = self.state();
+            state.next += 1;
+            let ticket = state.next;
+            state.waiting.insert(ticket, account);
+            ticket
+        };
+        let mut turn = ArchiveTurn { turns: self.clone(), account, ticket, began: None };
+        let until = tokio::time::Instant::now() + PATIENCE;
+        loop {
+            let changed = self.0.changed.notified();
+            tokio::pin!(changed);
+            // From here on nothing is missed.
+            changed.as_mut().enable();
+            {
+                let mut state = self.state();
+                if state.first(Instant::now()) == Some(ticket) {
+                    state.waiting.remove(&ticket);
+                    state.running.push(account);
+                    turn.began = Some(Instant::now());
+                    drop(state);
+                    // Another one may have a place, too.
+                    self.0.changed.notify_waiters();
+                    return Ok(turn);
+                }
+            }
+            if tokio::time::timeout_at(until, changed).await.is_err() {
+                return Err(Problem::unavailable("too many archives are being looked through"));
+            }
+        }
+    }
+}
+
+impl Drop for ArchiveTurn {
+    fn drop(&mut self) {
+        let mut state = self.turns.state();
+        let now = Instant::now();
+        state.waiting.remove(&self.ticket);
+        if let Some(began) = self.began {
+            let place = state.running.iter().position(|account| *account == self.account);
+            place.map(|place| state.running.swap_remove(place));
+            if state.taken.len() > MANY {
+                state.taken.retain(|_, (_, at)| now.saturating_duration_since(*at).as_secs_f64() < 10.0 * HALF_LIFE);
+            }
+            let seconds = state.taken(self.account, now) + now.saturating_duration_since(began).as_secs_f64();
+            state.taken.insert(self.account, (seconds, now));
+        }
+        drop(state);
+        self.turns.0.changed.notify_waiters();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[tokio::test]
+    async fn who_took_least_goes_first_and_nobody_has_two_turns() {
+        let turns = Turns::default();
+        let now = Instant::now();
+        turns.state().taken.insert(1, (30.0, now));
+        let (one, two) = (turns.wait(1).await.expect("a turn"), turns.wait(2).await.expect("a turn"));
+        let wait = |account| {
+            let turns = turns.clone();
+            tokio::spawn(async move { turns.wait(account).await.map(|turn| turn.account) })
+        };
+        let (again, bomber, other) = (wait(1), wait(1), wait(3));
+        while turns.state().waiting.len() < 3 {
+            tokio::task::yield_now().await;
+        }
+        assert_eq!(turns.state().first(now), None, "all places are taken");
+        drop(two);
+        assert_eq!(other.await.expect("no panic").expect("a turn"), 3, "the one who came last took least");
+        assert!(!again.is_finished() && !bomber.is_finished(), "an account has one turn");
+        bomber.abort();
+        drop(one);
+        assert_eq!(again.await.expect("no panic").expect("a turn"), 1);
+        drop(bomber.await);
+        assert!(turns.state().running.is_empty() && turns.state().waiting.is_empty());
+    }
+}

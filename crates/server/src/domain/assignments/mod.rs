@@ -1,0 +1,4 @@
+//! Assignments: their settings and suites.
+
+pub(super) mod settings;
+pub(super) mod suites;

@@ -1,0 +1,280 @@
+//! The settings of an assignment.
+use crate::domain::assignments::suites::{Suites, is_file_name};
+use crate::{
+    calendar,
+    db::DbError,
+    late::LatePolicy,
+    problem::{Problem, ensure},
+    store::Digest,
+    task::{Form, Input, Suite, Task},
+};
+use chrono_tz::{TZ_VARIANTS, Tz};
+use serde::{Deserialize, Deserializer, Serialize, de::Error};
+use serde_json::{Map, Value};
+use std::{collections::BTreeSet, ops::RangeInclusive};
+use utoipa::{
+    ToSchema,
+    openapi::{KnownFormat, ObjectBuilder, OneOfBuilder, Schema, SchemaFormat, Type},
+};
+
+/// How an assignment is graded, and what may be handed in.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(default, deny_unknown_fields)]
+pub struct Settings {
+    /// A suite that comes with the grader, `t2m2` for example; its default, if none is named. One that was uploaded
+    /// goes before it.
+    #[schema(pattern = "^([A-Za-z0-9_][A-Za-z0-9._-]*(@[A-Za-z0-9_][A-Za-z0-9._-]*)?)?$", max_length = 100)]
+    pub suite: String,
+    /// The digest of an archive with a `suite.toml`; uploaded by its own request.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(value_type = Option<crate::schema::Digest>)]
+    pub suite_archive: Option<String>,
+    /// The rule books: `parity`, `fair` or `both`; without it the suite decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(pattern = "^(parity|fair|both)$")]
+    pub rules: Option<String>,
+    /// How much reports tell: `none`, `where`, `what` or `full`; without it the suite decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(pattern = "^(none|where|what|full)$")]
+    pub hints: Option<String>,
+    /// The forms of submissions that are taken: `program`, `sources`, `traces`.
+    #[schema(value_type = Vec<Form>, min_items = 1)]
+    pub forms: Vec<String>,
+    /// The program's name in a folder of sources.
+    #[schema(value_type = crate::schema::FileName)]
+    pub program: String,
+    /// After this many seconds a grading is stopped, and what it has so far counts. At most an hour.
+    #[schema(minimum = 1, maximum = 3600)]
+    pub seconds: u64,
+    /// The largest upload, in bytes. At most a gigabyte.
+    #[schema(minimum = 1, maximum = 1_073_741_824)]
+    pub max_bytes: u64,
+    /// Submissions per student in all; 0 for as many as they like.
+    #[schema(maximum = 4_294_967_295_i64)]
+    pub attempts: u32,
+    /// Submissions per student within an hour; 0 for as many as they like.
+    #[schema(maximum = 4_294_967_295_i64)]
+    pub per_hour: u32,
+    /// No uploads of students after this moment, or `late_days` later: milliseconds since 1970, or a date with its time
+    /// zone (ISO 8601).
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "moment")]
+    #[schema(schema_with = moment_schema)]
+    pub due_at: Option<i64>,
+    /// The days after the due date in which uploads are still taken, at a price.
+    #[schema(maximum = 365)]
+    pub late_days: u32,
+    /// How many percent of the grader's points a submission loses for each day that has begun after it was due.
+    #[schema(maximum = 100)]
+    pub late_percent: u32,
+    /// The time zone by whose calendar late days end, such as `Europe/Berlin`; without it each has 24 hours.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schema(schema_with = zone_schema)]
+    pub time_zone: Option<Tz>,
+}
+
+/// Settings that always say something.
+const ALWAYS: [&str; 9] =
+    ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
+
+/// Reads a moment: a number, or a date.
+pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
+    #[derive(Deserialize)]
+    #[serde(untagged, expecting = "milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00")]
+    enum Moment {
+        Number(i64),
+        Text(String),
+    }
+    match Option::deserialize(deserializer)? {
+        None => Ok(None),
+        Some(Moment::Number(number)) => Ok(Some(number)),
+        Some(Moment::Text(text)) => calendar::read(&text).map(Some).ok_or_else(|| {
+            Error::custom(format!("{text:?} is not a date with a time zone, such as 2026-12-01T23:59:00+01:00"))
+        }),
+    }
+}
+
+pub(crate) fn moment_schema() -> Schema {
+    let number = |range: RangeInclusive<i64>| {
+        ObjectBuilder::new().schema_type(Type::Integer).minimum(Some(*range.start())).maximum(Some(*range.end()))
+    };
+    let date = SchemaFormat::KnownFormat(KnownFormat::DateTime);
+    let date =
+        ObjectBuilder::new().schema_type(Type::String).format(Some(date)).pattern(Some("^(199|2[0-9]{2})[0-9]-"));
+    let words = "No uploads of students after this moment: milliseconds since 1970, or a date with its time zone.";
+    let [early, late] = calendar::PLAUSIBLE;
+    let null = ObjectBuilder::new().schema_type(Type::Null);
+    OneOfBuilder::new().item(number(early)).item(number(late)).item(date).item(null).description(Some(words)).into()
+}
+
+fn zone_schema() -> Schema {
+    let names = ObjectBuilder::new().schema_type(Type::String).enum_values(Some(TZ_VARIANTS.map(Tz::name)));
+    let null = ObjectBuilder::new().schema_type(Type::Null);
+    let words = "The time zone by whose calendar late days end; without it each has 24 hours.";
+    OneOfBuilder::new().item(names).item(null).description(Some(words)).into()
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            suite: String::new(),
+            suite_archive: None,
+            rules: None,
+            hints: None,
+            forms: vec!["program".to_owned()],
+            program: "FOSSSim".to_owned(),
+            seconds: 600,
+            max_bytes: 128 << 20,
+            attempts: 0,
+            per_hour: 20,
+            due_at: None,
+            late_days: 0,
+            late_percent: 0,
+            time_zone: None,
+        }
+    }
+}
+
+impl Settings {
+    /// Reads settings as the database has them.
+    ///
+    /// # Errors
+    /// When another version of the program wrote them.
+    pub(in crate::domain) fn read(text: &str) -> Result<Self, DbError> {
+        let wrong = |error| DbError::Other(format!("the settings of an assignment can't be read: {error}"));
+        serde_json::from_str(text).map_err(wrong)
+    }
+
+    /// Returns the settings that are others than before, in words.
+    pub(in crate::domain) fn changes(&self, before: &Self) -> String {
+        let fields = |settings: &Self| match serde_json::to_value(settings) {
+            Ok(Value::Object(fields)) => fields,
+            _ => Map::new(),
+        };
+        let (new, old) = (fields(self), fields(before));
+        let names: BTreeSet<&String> = new.keys().chain(old.keys()).collect();
+        let words = |name: &String| match (name.as_str(), new.get(name)) {
+            (_, None) => format!("no {name}"),
+            ("due_at", Some(Value::Number(due))) => {
+                format!("{name} {} UTC", calendar::minute(due.as_i64().unwrap_or_default()))
+            }
+            (_, Some(Value::String(text))) => format!("{name} {text}"),
+            (_, Some(value)) => format!("{name} {value}"),
+        };
+        names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the settings with other fields; fields that are null are removed.
+    ///
+    /// # Errors
+    /// When a field is unknown, or of another kind.
+    pub fn with(&self, changes: &Map<String, Value>) -> Result<Self, Problem> {
+        let Ok(Value::Object(mut fields)) = serde_json::to_value(self) else { return Err(Problem::fault()) };
+        // A suite that is named is meant, and no other.
+        if changes.contains_key("suite") {
+            fields.remove("suite_archive");
+        }
+        for (name, value) in changes {
+            match value {
+                Value::Null if ALWAYS.contains(&name.as_str()) => {
+                    return Err(Problem::invalid(format!("{name} must not be null")));
+                }
+                Value::Null => drop(fields.remove(name)),
+                value => drop(fields.insert(name.clone(), value.clone())),
+            }
+        }
+        serde_json::from_value(Value::Object(fields)).map_err(|error| Problem::invalid(error.to_string()))
+    }
+
+    /// Returns the settings, graded as by others.
+    pub(in crate::domain) fn graded_as(&self, other: &Self) -> Self {
+        let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
+        Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
+    }
+
+    /// Returns the settings as the database keeps them.
+    pub fn text(&self) -> String {
+        serde_json::to_string(self).unwrap_or_default()
+    }
+
+    /// Returns the settings with the suite's name filled in, where they make sense.
+    ///
+    /// # Errors
+    /// The first setting that makes no sense.
+    pub fn checked(&self, suites: &Suites) -> Result<Self, Problem> {
+        let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
+        settings.check(suites)?;
+        Ok(settings)
+    }
+
+    fn check(&self, suites: &Suites) -> Result<(), Problem> {
+        let one_of = |name: &str, value: &Option<String>, known: &[&str]| match value {
+            Some(value) if !known.contains(&value.as_str()) => {
+                Err(Problem::invalid(format!("{name} is one of {}", known.join(", "))))
+            }
+            _ => Ok(()),
+        };
+        one_of("rules", &self.rules, &["parity", "fair", "both"])?;
+        one_of("hints", &self.hints, &["none", "where", "what", "full"])?;
+        suites.check(&self.suite)?;
+        if let Some(archive) = &self.suite_archive {
+            archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
+        }
+        if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
+            return Err(Problem::invalid("forms is a list of program, sources and traces"));
+        }
+        ensure(is_file_name(&self.program), Problem::invalid("program is a plain file name"))?;
+        if let Some(due) = self.due_at.filter(|due| !calendar::is_plausible(*due)) {
+            return Err(Problem::invalid(format!(
+                "due_at is milliseconds since 1970, and {due} looks like seconds; write \
+                 milliseconds, or a date such as 2026-12-01T23:59:00+01:00"
+            )));
+        }
+        if self.late_days > 365 || self.late_percent > 100 {
+            return Err(Problem::invalid("late_days is at most 365, and late_percent at most 100"));
+        }
+        ensure((1..=3600).contains(&self.seconds), Problem::invalid("seconds is between 1 and 3600"))?;
+        ensure((1..=1 << 30).contains(&self.max_bytes), Problem::invalid("max_bytes is between 1 and 1073741824"))?;
+        Ok(())
+    }
+
+    /// Returns the part about being late.
+    pub(crate) fn late_policy(&self) -> LatePolicy {
+        let Self { due_at, late_days, late_percent, time_zone, .. } = *self;
+        LatePolicy { due_at, late_days, late_percent, time_zone }
+    }
+
+    /// Returns whether a form of this name may be handed in.
+    pub fn has_form(&self, form: &str) -> bool {
+        self.forms.iter().any(|name| name == form)
+    }
+
+    /// Returns the forms that are taken, in words.
+    pub fn taken(&self) -> String {
+        let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
+        taken.map(Form::describe).collect::<Vec<_>>().join(" or ")
+    }
+
+    /// Returns whether this may be handed in.
+    pub fn takes(&self, form: Form) -> bool {
+        self.has_form(form.name())
+    }
+
+    /// Returns a worker's task for an input.
+    pub(in crate::domain) fn task(&self, submission: Input) -> Task {
+        Task {
+            submission,
+            suite: self.suite(),
+            rules: self.rules.clone(),
+            hints: self.hints.clone(),
+            program: self.program.clone(),
+            seconds: self.seconds,
+        }
+    }
+
+    fn suite(&self) -> Suite {
+        match self.suite_archive.as_ref().and_then(|digest| digest.parse().ok()) {
+            Some(digest) => Suite::Archive(digest),
+            None => Suite::Named(self.suite.clone()),
+        }
+    }
+}

@@ -1,0 +1,119 @@
+//! The suites that come with the grader, by name. The grader lists them itself (`suite list --format json`), so that
+//! this program need not know them.
+use crate::problem::Problem;
+use serde::Deserialize;
+
+/// The names of these suites. A server whose workers are elsewhere may have no grader to ask; then it takes any plain
+/// name, and the worker's grader says whether it has such a suite.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Suites {
+    names: Vec<String>,
+    /// Names without a version, each with the newest version's name.
+    newest: Vec<(String, String)>,
+    default: String,
+}
+
+#[derive(Deserialize)]
+struct ListedSuites {
+    suites: Vec<Entry>,
+}
+
+#[derive(Deserialize)]
+struct Entry {
+    name: String,
+    /// The name without its version.
+    #[serde(default)]
+    suite: String,
+    default: bool,
+}
+
+/// Returns whether a name is one file in a folder, on every system, and looks the same in every message.
+pub fn is_file_name(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
+}
+
+impl Suites {
+    /// Reads the grader's list.
+    ///
+    /// # Errors
+    /// When it is none.
+    pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
+        let list: ListedSuites = serde_json::from_slice(json)?;
+        let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
+        let mut newest: Vec<(String, String)> = Vec::new();
+        for entry in list.suites.iter().filter(|entry| !entry.suite.is_empty()) {
+            // The newest version comes first.
+            if newest.iter().all(|(suite, _)| *suite != entry.suite) {
+                newest.push((entry.suite.clone(), entry.name.clone()));
+            }
+        }
+        let names = list.suites.into_iter().map(|suite| suite.name).collect();
+        Ok(Self { names, newest, default: default.unwrap_or_default() })
+    }
+
+    /// Returns the name for settings: that of the grader's default where there is none, and with the newest version
+    /// where there is no version, so that later versions of the grader change nothing. As it is where the grader can't
+    /// be asked here, which leaves the choice to it.
+    pub(in crate::domain) fn or_default(&self, name: &str) -> String {
+        let newest = self.newest.iter().find(|(suite, _)| suite == name);
+        match newest {
+            Some((_, newest)) => newest.clone(),
+            None if name.is_empty() => self.default.clone(),
+            None => name.to_owned(),
+        }
+    }
+
+    /// Checks that there is such a suite.
+    pub(in crate::domain) fn check(&self, name: &str) -> Result<(), Problem> {
+        // The version stands behind an `@`.
+        let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
+        match () {
+            () if !is_name => Err(Problem::invalid(format!("suite is {}", self.describe()))),
+            () if self.names.is_empty() || self.names.iter().any(|known| known == name) => Ok(()),
+            () => Err(Problem::conflict(format!("suite is {}", self.describe()), "name one that is there")),
+        }
+    }
+
+    /// Returns the suites' names; none where the grader can't be asked.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// Returns which names there are, in words.
+    pub fn describe(&self) -> String {
+        match self.names.as_slice() {
+            [] => "a name that `fosssim-oracle suite list` shows".to_owned(),
+            [only] => only.clone(),
+            [some @ .., last] => format!("{} or {last}", some.join(", ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_those_of_the_graders_list() {
+        let json = br#"{"schema": 1, "suites": [{"name": "new", "title": "New", "default": false}, {"name": "old", "title": "Old", "default": true}]}"#;
+        let suites = Suites::read(json).expect("a list");
+        assert_eq!(suites.describe(), "new or old");
+        assert_eq!((suites.or_default("").as_str(), suites.or_default("new").as_str()), ("old", "new"));
+        let json = br#"{"schema": 2, "suites": [{"name": "m@2", "suite": "m", "default": true}, {"name": "m@1", "suite": "m", "default": false}]}"#;
+        let versions = Suites::read(json).expect("a list");
+        let filled = ["", "m", "m@1", "m@2"].map(|name| versions.or_default(name));
+        assert_eq!(filled, ["m@2", "m@2", "m@1", "m@2"], "what is kept names its version");
+        assert!(suites.check("new").is_ok() && suites.check("old").is_ok());
+        assert_eq!(suites.check("other").expect_err("unknown").detail, "suite is new or old");
+        assert!(Suites::read(b"usage: ...").is_err());
+    }
+
+    #[test]
+    fn without_a_grader_any_plain_name_will_do() {
+        let suites = Suites::default();
+        assert!(suites.check("").is_ok() && suites.check("t9m9").is_ok() && suites.check("t9m9@2").is_ok());
+        assert!(suites.check("t9m9@").is_err() && suites.check("t9m9@1@2").is_err());
+        assert!(suites.check("../../etc/passwd").is_err() && suites.check("--output").is_err());
+    }
+}

@@ -1,0 +1,57 @@
+//! A course to try the service with: made on a fresh server when the person who starts it asks for it.
+use crate::domain::{
+    App, NewSecret, Settings,
+    accounts::identity::{self, Way},
+    roles::admin,
+};
+use crate::{problem::Problem, values};
+
+/// The course that is made; one of this name is taken for it.
+const COURSE: (&str, &str) = ("example", "Example");
+const ASSIGNMENT: (&str, &str) = ("m1", "Milestone one");
+const STUDENT: (&str, &str) = ("student", "A student");
+
+impl App {
+    /// Makes the example course, with an assignment and a student, where there is no course at all. Returns a link that
+    /// signs the student in once, unless they have been here before.
+    ///
+    /// # Errors
+    /// When there are other courses, or a `student` of theirs: this is a real server.
+    pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
+        let mut transaction = self.0.database.begin().await?;
+        let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";
+        let known = transaction.one(statement, values![COURSE.0]).await?;
+        if known.int("examples")? == 0 {
+            if known.int("courses")? > 0 {
+                return Err(Problem::conflict("this server has courses already", "start it without --example"));
+            }
+            let settings = Settings::default().checked(&self.suites)?;
+            let course = admin::make_course(&mut transaction, COURSE).await?;
+            let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
+                VALUES (?, ?, ?, 1, ?, {now})";
+            transaction.execute(statement, values![course, ASSIGNMENT.0, ASSIGNMENT.1, settings.text()]).await?;
+            let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
+                ON CONFLICT (login) DO NOTHING RETURNING id";
+            let made = transaction.row(statement, values![STUDENT.0, STUDENT.1, course]).await?;
+            let Some(student) = made else {
+                return Err(Problem::conflict("somebody is called student already", "start it without --example"));
+            };
+            let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, 'student', {now})";
+            transaction.execute(statement, values![course, student.int("id")?]).await?;
+        }
+        let statement = "SELECT account.id FROM account
+            JOIN member ON member.account = account.id AND member.role = 'student'
+            JOIN course ON course.id = member.course AND course.slug = ?
+            WHERE account.login = ? AND account.is_admin = 0
+               AND (SELECT count(*) FROM member AS other WHERE other.account = account.id) = 1
+               AND NOT EXISTS (SELECT 1 FROM sign_in_link
+                   WHERE sign_in_link.account = account.id AND sign_in_link.used_at IS NOT NULL)";
+        let student = transaction.row(statement, values![COURSE.0, STUDENT.0]).await?;
+        let link = match student {
+            Some(student) => Some(identity::new_link(&mut transaction, student.int("id")?, None, Way::Own).await?),
+            None => None,
+        };
+        transaction.commit().await?;
+        Ok(link)
+    }
+}

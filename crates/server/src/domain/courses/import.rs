@@ -1,0 +1,160 @@
+//! A whole class by a table: name, login, e-mail address and role of each, as spreadsheets write it (CSV).
+use crate::domain::{Staff, courses::members::check_member};
+use crate::problem::Problem;
+use serde::Serialize;
+use std::collections::BTreeSet;
+use utoipa::ToSchema;
+
+/// The longest list.
+const MOST: usize = 5000;
+
+/// The columns, in their order where the first line does not name them, each with how else it is called.
+const COLUMNS: [&[&str]; 4] = [
+    &["name", "fullname"],
+    &["login", "username", "loginname", "userid"],
+    &["email", "emailaddress", "mail"],
+    &["role"],
+];
+
+/// A line of a table of members, and what became of it.
+#[derive(Serialize, ToSchema)]
+pub struct MemberLine {
+    pub(crate) line: u64,
+    pub(crate) name: String,
+    pub(crate) login: String,
+    // Where to send the link; not kept.
+    pub(crate) email: String,
+    pub(crate) role: String,
+    /// The error in the line; then nothing was done about any.
+    pub(crate) error: Option<String>,
+    /// A link that signs in once; nothing where the account was there before.
+    pub(crate) link: Option<String>,
+}
+
+/// Returns which column a heading names: "E-mail address" is "email".
+fn column(heading: &str) -> Option<usize> {
+    let plain: String = heading.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+    COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
+}
+
+/// Returns the places of the columns, by the headings of the first line; nothing where these are no headings.
+fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
+    if words.iter().all(|word| column(word).is_none()) {
+        return Ok(None);
+    }
+    let mut places = [None; COLUMNS.len()];
+    for (place, word) in words.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
+        let taken = column(word).is_some_and(|column| places[column].replace(place).is_none());
+        if !taken {
+            return Err(Problem::invalid(format!(
+                "the column {word} is not understood, or there twice: columns are name, login, email and role"
+            )));
+        }
+    }
+    match places[1] {
+        Some(_) => Ok(Some(places)),
+        None => Err(Problem::invalid("the first line names columns, and none of them login")),
+    }
+}
+
+/// Reads a table; what is wrong with a line is told with it.
+fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
+    let first = text.lines().next().unwrap_or_default();
+    if first.trim_start().starts_with(['{', '[']) {
+        return Err(Problem::invalid("this is JSON, and no table"));
+    }
+    // Spreadsheets of other countries separate by something else.
+    let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
+    let mut reader = csv::ReaderBuilder::new()
+        .delimiter(delimiter)
+        .has_headers(false)
+        .flexible(true)
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    let mut places: [Option<usize>; COLUMNS.len()] = std::array::from_fn(Some);
+    let mut logins = BTreeSet::new();
+    let mut lines = Vec::new();
+    let mut counted = (0, 1);
+    for (index, record) in reader.records().enumerate() {
+        let record = record.map_err(|error| Problem::invalid(format!("the table is not understood: {error}")))?;
+        let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
+        let words: Vec<String> = record.iter().map(cell).collect();
+        if index == 0
+            && let Some(named) = headings(&words)?
+        {
+            places = named;
+            continue;
+        }
+        let is_beside = |(place, word): (usize, &String)| !word.is_empty() && !places.contains(&Some(place));
+        let beside = words.iter().enumerate().any(is_beside);
+        let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
+        // A reader of tables takes the second byte of a line's end for the next line's.
+        let at = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
+        let ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
+        counted = (at, counted.1 + ends(text.as_bytes().get(counted.0..at).unwrap_or_default()));
+        let line = counted.1 + u64::from(text.as_bytes().get(at) == Some(&b'\n'));
+        let (name, login, email) = (field(0), field(1).to_lowercase(), field(2));
+        let role =
+            Some(field(3).to_lowercase()).filter(|role| !role.is_empty()).unwrap_or_else(|| "student".to_owned());
+        let checked = check_member(&login, &name, &role);
+        let error = match checked {
+            Err(problem) => Some(problem.detail),
+            Ok(()) if !logins.insert(login.clone()) => Some("this login is in the table twice".to_owned()),
+            Ok(()) if beside => Some("there is more in this line than name, login, email and role".to_owned()),
+            Ok(()) => None,
+        };
+        lines.push(MemberLine { line, name, login, email, role, error, link: None });
+        if lines.len() > MOST {
+            return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
+        }
+    }
+    if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }
+}
+
+impl Staff {
+    /// Makes all members of a table, if nothing is wrong with any line; with `preview` only reads it.
+    ///
+    /// # Errors
+    /// When it is no table, or somebody changed one of its members since the event that was `seen`.
+    pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
+        let mut lines = read(text)?;
+        if preview || lines.iter().any(|line| line.error.is_some()) {
+            return Ok(lines);
+        }
+        let mut transaction = self.begin().await?;
+        // In one order, whatever the table's: two that import at once do not wait for each other.
+        let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
+        in_order.sort_by(|one, other| one.login.cmp(&other.login));
+        for line in in_order {
+            self.check_seen(&mut transaction, ("member", None), &format!("{} is ", line.login), seen).await?;
+            line.link = self.add(&mut transaction, &line.login, &line.name, &line.role).await?;
+        }
+        transaction.commit().await?;
+        Ok(lines)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::read;
+
+    #[test]
+    fn tables_are_read_as_spreadsheets_write_them() {
+        let lines = |text: &str| read(text).expect("a table");
+        let plain = lines("Ada Lovelace,ada,ada@example.org,staff\n\"Babbage, C.\",Charles\n");
+        assert_eq!((plain[0].role.as_str(), plain[1].role.as_str()), ("staff", "student"));
+        assert_eq!((plain[1].name.as_str(), plain[1].login.as_str(), plain[1].line), ("Babbage, C.", "charles", 2));
+        let named = lines("\u{feff}Login;Role;Name\r\nada;student;Ada\r\n");
+        assert_eq!((named[0].login.as_str(), named[0].name.as_str(), named[0].line), ("ada", "Ada", 2));
+        let others = lines("User name;E-Mail;NAME;\nada;ada@example.org;Ada\n");
+        assert_eq!((others[0].login.as_str(), others[0].email.as_str()), ("ada", "ada@example.org"));
+        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Number\nada,Ada,7\n", "Login,Name,Login\nada,Ada,eve\n"] {
+            assert!(read(bad).is_err(), "{bad}");
+        }
+        assert!(lines("Ada,ada,,student,7\n")[0].error.is_some(), "nothing is dropped in silence");
+        let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
+        let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
+        assert_eq!(errors, [false, true, true, true, true]);
+        assert!(read("").is_err() && read(r#"[{"name": "Ada", "login": "ada"}]"#).is_err());
+    }
+}

@@ -1,0 +1,227 @@
+//! The people in a course.
+use crate::domain::{
+    Staff,
+    accounts::identity::{self, Link, Way},
+};
+use crate::{
+    db::{DbError, Transaction, from_row},
+    problem::{Problem, ensure},
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// A member of a course.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct MemberInfo {
+    /// The name of their account.
+    pub login: String,
+    /// The member's name.
+    pub name: String,
+    /// `student` or `staff`.
+    pub role: String,
+}
+
+/// People on a page.
+pub(in crate::domain) const PEOPLE: i64 = 200;
+
+from_row! { MemberInfo { login, name, role } }
+
+/// Checks that these are names and a role.
+pub(in crate::domain) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
+    identity::check_slug("a login", login)?;
+    identity::check_title("a name", name)?;
+    if matches!(role, "student" | "staff") { Ok(()) } else { Err(Problem::invalid("a role is student or staff")) }
+}
+
+impl Staff {
+    /// Returns the course's members.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT account.login, account.name, member.role FROM member
+            JOIN account ON account.id = member.account WHERE member.course = ? ORDER BY account.login";
+        Ok(transaction.all(statement, values![self.course]).await?)
+    }
+
+    /// Returns those whose login or name has these words, behind the one of this login: a page of them, and whether
+    /// there are more.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn members_page(&self, words: &str, after: &str) -> Result<(Vec<MemberInfo>, bool), Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT account.login, account.name, member.role FROM member
+            JOIN account ON account.id = member.account
+            WHERE member.course = ? AND login > ? AND ({strpos}(lower(login || ' ' || name), ?) > 0
+               OR {strpos}(name, ?) > 0)
+            ORDER BY login LIMIT ?";
+        let (words, most) = (words.trim(), PEOPLE + 1);
+        let values = values![self.course, after, words.to_lowercase(), words, most];
+        let mut people: Vec<MemberInfo> = transaction.all(statement, values).await?;
+        let has_more = people.len() as i64 == most;
+        people.truncate(PEOPLE as usize);
+        Ok((people, has_more))
+    }
+
+    /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
+    /// signs in once. An account that another course's staff made, who may sign in as it, an administrator adds.
+    ///
+    /// # Errors
+    /// When a name is none, or somebody changed the member since the event that was `seen`.
+    pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
+        check_member(login, name, role)?;
+        let mut transaction = self.app.0.database.begin().await?;
+        self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
+        let link = self.add(&mut transaction, login, name, role).await?;
+        transaction.commit().await?;
+        Ok(Link { link })
+    }
+
+    /// Returns the number of the course's last event: what somebody who reads the members now has seen.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn last_event(&self) -> Result<i64, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT coalesce(max(id), 0) AS id FROM event WHERE course = ?";
+        Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
+    }
+
+    /// Refuses a change of what somebody else changed since the event that was `seen`, and says who, and what: there is
+    /// a later event of this kind, of an assignment or of none, whose text begins so.
+    pub(in crate::domain) async fn check_seen(
+        &self,
+        transaction: &mut Transaction,
+        (kind, assignment): (&str, Option<i64>),
+        beginning: &str,
+        seen: Option<i64>,
+    ) -> Result<(), Problem> {
+        let Some(seen) = seen else { return Ok(()) };
+        let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
+            WHERE event.course = ? AND event.id > ? AND event.kind = ? AND coalesce(event.assignment, 0) = ?
+               AND {strpos}(event.text, ?) = 1
+            ORDER BY event.id DESC LIMIT 1";
+        let values = values![self.course, seen, kind, assignment.unwrap_or(0), beginning];
+        let Some(row) = transaction.row(statement, values).await? else { return Ok(()) };
+        let (who, what) = (row.maybe_text("login")?.unwrap_or_default(), row.text("text")?);
+        Err(Problem::conflict(
+            format!("{who} changed it meanwhile: {what}"),
+            "load the page again, and change it there",
+        ))
+    }
+
+    pub(in crate::domain) async fn add(
+        &self,
+        transaction: &mut Transaction,
+        login: &str,
+        name: &str,
+        role: &str,
+    ) -> Result<Option<String>, Problem> {
+        let course = self.course;
+        let statement = "INSERT INTO account (login, name, managed_by, created_at) VALUES (?, ?, ?, {now})
+            ON CONFLICT (login) DO NOTHING RETURNING id";
+        let made = transaction.row(statement, values![login, name, course]).await?;
+        if let Some(made) = made {
+            let account = made.int("id")?;
+            self.enter(transaction, account, login, role).await?;
+            return Ok(self.link(transaction, account, self.way()).await?);
+        }
+        let found =
+            transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
+        let (account, managed_by) = (found.int("id")?, found.maybe_int("managed_by")?);
+        let statement = "SELECT role FROM member WHERE course = ? AND account = ?";
+        let was = transaction.row(statement, values![course, account]).await?;
+        let was = was.map(|row| row.text("role")).transpose()?;
+        if was.as_deref() == Some(role) {
+            return Ok(None);
+        }
+        self.check_left(transaction, login, role).await?;
+        let is_of_others = managed_by.is_some_and(|other| other != course);
+        let is_admin = self.account.is_admin;
+        if is_of_others && !is_admin {
+            let detail = format!("{login} is an account of another course: an administrator adds it");
+            return Err(Problem::not_allowed(detail));
+        }
+        let ends_all = is_admin && role == "staff" && !identity::is_trusted(transaction, account).await?;
+        if ends_all {
+            identity::end_all(transaction, account).await?;
+        } else if is_of_others {
+            identity::end_vouched(transaction, account).await?;
+        }
+        self.enter(transaction, account, login, role).await?;
+        match ends_all || is_of_others {
+            true => Ok(self.link(transaction, account, Way::Own).await?),
+            false => Ok(None),
+        }
+    }
+
+    /// Checks that somebody of the course's staff is left when this member becomes something else.
+    async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
+        let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
+        let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
+        if goes && transaction.one(statement, values![self.course, self.account.id]).await?.int("n")? == 0 {
+            return Err(Problem::conflict("you are the last of the course's staff", "make somebody else staff before"));
+        }
+        Ok(())
+    }
+
+    /// Returns how the user of a link of this person's comes in.
+    fn way(&self) -> Way {
+        if self.account.is_admin { Way::Own } else { Way::Vouched }
+    }
+
+    /// Makes a link that signs somebody in once.
+    async fn link(&self, transaction: &mut Transaction, account: i64, way: Way) -> Result<Option<String>, DbError> {
+        let secret = identity::new_link(transaction, account, Some(self.account.id), way).await?;
+        Ok(Some(self.app.welcome_address(&secret)))
+    }
+
+    async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
+        let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
+            ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL";
+        transaction.execute(statement, values![self.course, account, role]).await?;
+        self.note(transaction, "member", None, &format!("{login} is {role}")).await
+    }
+
+    /// Takes somebody out of the course; what they handed in stays.
+    ///
+    /// # Errors
+    /// When they are no member, or somebody changed them since the event that was `seen`.
+    pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
+        self.check_left(&mut transaction, login, "out").await?;
+        let statement = "DELETE FROM member WHERE course = ? AND account = (SELECT id FROM account WHERE login = ?)";
+        let removed = transaction.execute(statement, values![self.course, login]).await?;
+        ensure(removed > 0, Problem::not_found("member"))?;
+        self.note(&mut transaction, "member", None, &format!("{login} is out")).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Returns a new link that signs a student in once. Staff makes it for accounts that are this course's alone: made
+    /// here, in no other course, without a password or a platform of their own. Anybody who could sign in as somebody
+    /// else could do what they may do.
+    ///
+    /// # Errors
+    /// When the account is more than that, or no member.
+    pub async fn new_link(&self, login: &str) -> Result<Link, Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT account.id, account.is_admin, account.managed_by, member.role
+            FROM account JOIN member ON member.account = account.id
+            WHERE account.login = ? AND member.course = ? AND account.disabled_at IS NULL";
+        let row = transaction.row(statement, values![login, self.course]).await?;
+        let Some(row) = row else { return Err(Problem::not_found("member")) };
+        let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
+        if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
+            let detail = "this account is its person's own: more than a student of this course, or with a password";
+            return Err(Problem::not_allowed(detail));
+        }
+        let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;
+        self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
+        transaction.commit().await?;
+        Ok(Link { link })
+    }
+}

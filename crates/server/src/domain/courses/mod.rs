@@ -1,0 +1,6 @@
+//! Courses and the people in them.
+
+pub(super) mod example;
+pub(super) mod import;
+pub(super) mod members;
+pub(super) mod removal;

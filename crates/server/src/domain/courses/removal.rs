@@ -1,0 +1,247 @@
+//! Removing people, submissions, assignments and courses with all that is kept of them. The audit log says that it was
+//! done, and names nobody. Bytes in the store go when nothing names them any more, see [`retention`](crate::retention);
+//! a job that runs meanwhile finds its lease gone, and ends without effect.
+use crate::domain::{Admin, Staff};
+use crate::{
+    db::{Database, DbError, Transaction},
+    lti::score,
+    problem::{Problem, ensure},
+    values,
+};
+
+/// The rows that are kept of submissions, in the order in which they go.
+const PARTS: [&str; 10] = [
+    "DELETE FROM result_file WHERE result IN (SELECT result.id FROM result JOIN {each}
+        ON result.submission = CAST(wanted.value AS {int}))",
+    "DELETE FROM mark WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM grade_change WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM grade WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM result WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM job_file WHERE job IN (SELECT job.id FROM job JOIN {each}
+        ON job.submission = CAST(wanted.value AS {int}))",
+    "DELETE FROM job WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM upload_key WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM event WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+    "DELETE FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
+];
+
+/// The first of them: others write between two batches.
+const SOME_OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ? ORDER BY id LIMIT 500";
+const SOME_OF_COURSE: &str =
+    "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)
+    ORDER BY id LIMIT 500";
+const SOME_OF_PERSON: &str = "SELECT id FROM submission WHERE account = ? ORDER BY id LIMIT 500";
+
+const OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ?";
+const OF_COURSE: &str = "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
+const OF_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
+
+/// Takes the jobs of submissions, which a statement finds, out of the queue; the submissions' numbers as JSON. What is
+/// finished in this moment is waited for: its result is there then, to be removed.
+async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<String, DbError> {
+    let rows = transaction.rows(which, values![value]).await?;
+    let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
+    let ids = serde_json::to_string(&ids).unwrap_or_default();
+    let statement = "WITH going AS (SELECT id FROM job WHERE state IN ('waiting', 'running')
+           AND submission IN (SELECT CAST(wanted.value AS {int}) FROM {each}) ORDER BY id {for update})
+        UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+        WHERE id IN (SELECT id FROM going)";
+    transaction.execute(statement, values![&ids]).await?;
+    Ok(ids)
+}
+
+/// Removes what is kept of submissions that a statement finds. Anybody who writes about one of them is waited for.
+async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
+    let ids = cancel_jobs(transaction, which, value).await?;
+    let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
+                  ORDER BY id {for removal}";
+    transaction.rows(locked, values![&ids]).await?;
+    for statement in PARTS {
+        transaction.execute(statement, values![&ids]).await?;
+    }
+    Ok(())
+}
+
+/// Removes submissions batch by batch, until a statement finds no more; the caller removes those that come meanwhile.
+async fn remove_in_batches(database: &Database, which: &'static str, value: i64) -> Result<(), DbError> {
+    loop {
+        let mut transaction = database.begin().await?;
+        if transaction.row(which, values![value]).await?.is_none() {
+            return Ok(());
+        }
+        remove_submissions(&mut transaction, which, value).await?;
+        transaction.commit().await?;
+    }
+}
+
+async fn run(transaction: &mut Transaction, statements: &[&'static str], id: i64) -> Result<(), DbError> {
+    for statement in statements {
+        transaction.execute(statement, values![id]).await?;
+    }
+    Ok(())
+}
+
+impl Staff {
+    /// Removes a submission.
+    ///
+    /// # Errors
+    /// When the course has none of this number.
+    pub async fn remove_submission(&self, id: i64) -> Result<(), Problem> {
+        let mut transaction = self.begin().await?;
+        let statement = "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment
+            WHERE submission.id = ? AND assignment.course = ?";
+        let found = transaction.row(statement, values![id, self.course]).await?;
+        let Some(found) = found else { return Err(Problem::not_found("submission")) };
+        score::changed(&mut transaction, id).await?;
+        remove_submissions(&mut transaction, "SELECT id FROM submission WHERE id = ?", id).await?;
+        self.note(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
+        Ok(self.app.0.notifier.commit(transaction).await?)
+    }
+
+    /// Removes an assignment with its submissions.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn remove_assignment(&self, slug: &str) -> Result<(), Problem> {
+        let assignment = self.assignment(slug).await?;
+        remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
+        let mut transaction = self.begin().await?;
+        cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
+        // From here on nobody hands in.
+        transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
+        remove_submissions(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
+        let rest = [
+            "DELETE FROM platform_score WHERE link IN (SELECT id FROM platform_link WHERE assignment = ?)",
+            "DELETE FROM platform_link WHERE assignment = ?",
+            "DELETE FROM numbering WHERE assignment = ?",
+            "DELETE FROM extension WHERE assignment = ?",
+            "DELETE FROM campaign WHERE assignment = ?",
+            "DELETE FROM event WHERE assignment = ?",
+            "DELETE FROM assignment WHERE id = ?",
+        ];
+        run(&mut transaction, &rest, assignment.id).await?;
+        self.note(&mut transaction, "removed", None, &format!("the assignment {slug}")).await?;
+        Ok(transaction.commit().await?)
+    }
+}
+
+impl Admin {
+    async fn course(&self, transaction: &mut Transaction, slug: &str) -> Result<i64, Problem> {
+        let row = transaction.row("SELECT id FROM course WHERE slug = ?", values![slug]).await?;
+        Ok(row.ok_or_else(|| Problem::not_found("course"))?.int("id")?)
+    }
+
+    /// Removes a course with its assignments and submissions. People's accounts stay.
+    ///
+    /// # Errors
+    /// When there is no such course.
+    pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let course = self.course(&mut transaction, slug).await?;
+        drop(transaction);
+        remove_in_batches(&self.app.0.database, SOME_OF_COURSE, course).await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        cancel_jobs(&mut transaction, OF_COURSE, course).await?;
+        transaction.rows("SELECT id FROM course WHERE id = ? {for removal}", values![course]).await?;
+        transaction.rows("SELECT id FROM assignment WHERE course = ? {for removal}", values![course]).await?;
+        remove_submissions(&mut transaction, OF_COURSE, course).await?;
+        let rest = [
+            "DELETE FROM platform_score WHERE link IN (SELECT platform_link.id FROM platform_link
+                JOIN platform_course ON platform_course.id = platform_link.platform_course WHERE course = ?)",
+            "DELETE FROM platform_link WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
+            "DELETE FROM platform_member WHERE platform_course IN (SELECT id FROM platform_course WHERE course = ?)",
+            "DELETE FROM platform_course WHERE course = ?",
+            "DELETE FROM numbering WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
+            "DELETE FROM extension WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
+            "DELETE FROM campaign WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)",
+            "DELETE FROM assignment WHERE course = ?",
+            "DELETE FROM suite WHERE course = ?",
+            "DELETE FROM kept_bytes WHERE course = ?",
+            "DELETE FROM member WHERE course = ?",
+            "UPDATE account SET managed_by = NULL WHERE managed_by = ?",
+            "DELETE FROM event WHERE course = ?",
+            "DELETE FROM course WHERE id = ?",
+        ];
+        run(&mut transaction, &rest, course).await?;
+        self.note(&mut transaction, "removed", "a course with all that belonged to it").await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Removes a person: what they handed in, what it came to, their names, and every way in. What they did as staff
+    /// stays, by nobody's name.
+    ///
+    /// # Errors
+    /// When there is no such account, or it is one's own.
+    pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
+        ensure(login != self.account.login, Problem::own_account())?;
+        let mut transaction = self.app.0.database.read().await?;
+        let row = transaction.row("SELECT id FROM account WHERE login = ?", values![login]).await?;
+        drop(transaction);
+        let Some(row) = row else { return Err(Problem::not_found("account")) };
+        let account = row.int("id")?;
+        remove_in_batches(&self.app.0.database, SOME_OF_PERSON, account).await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        cancel_jobs(&mut transaction, OF_PERSON, account).await?;
+        transaction.rows("SELECT id FROM account WHERE id = ? {for removal}", values![account]).await?;
+        remove_submissions(&mut transaction, OF_PERSON, account).await?;
+        let rest = [
+            "DELETE FROM platform_score WHERE account = ?",
+            "DELETE FROM platform_choice WHERE account = ?",
+            "DELETE FROM platform_member WHERE account = ?",
+            "DELETE FROM platform_account WHERE account = ?",
+            "DELETE FROM numbering WHERE account = ?",
+            "DELETE FROM extension WHERE account = ?",
+            "DELETE FROM kept_bytes WHERE account = ?",
+            "DELETE FROM member WHERE account = ?",
+            "DELETE FROM session WHERE account = ?",
+            "DELETE FROM sign_in_link WHERE account = ?",
+            "DELETE FROM token WHERE account = ?",
+        ];
+        run(&mut transaction, &rest, account).await?;
+        let nobody = format!("removed-{account}");
+        let statement = "UPDATE account SET login = ?, name = 'a removed person', password = NULL, is_admin = 0,
+            managed_by = NULL, disabled_at = {now} WHERE id = ?";
+        transaction.execute(statement, values![&nobody, account]).await?;
+        // The log has logins in its sentences, too.
+        let statement = "SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'";
+        let rows = transaction.rows(statement, values![login]).await?;
+        for row in &rows {
+            let text = without_name(&row.text("text")?, login, &nobody);
+            transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;
+        }
+        self.note(&mut transaction, "removed", "a person with all that was kept of them").await?;
+        Ok(transaction.commit().await?)
+    }
+}
+
+/// Returns a sentence with another name in it, where it is a word of its own.
+fn without_name(text: &str, name: &str, other: &str) -> String {
+    let is_of_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
+    let mut left = text;
+    let mut kept = String::with_capacity(text.len());
+    while let Some(at) = left.find(name) {
+        let (before, after) = (&left[..at], &left[at + name.len()..]);
+        let whole =
+            !kept.chars().chain(before.chars()).next_back().is_some_and(is_of_word) && !after.starts_with(is_of_word);
+        kept.push_str(before);
+        kept.push_str(if whole { other } else { name });
+        left = after;
+    }
+    kept + left
+}
+
+#[cfg(test)]
+mod tests {
+    use super::without_name;
+
+    #[test]
+    fn only_whole_names_are_replaced() {
+        let without = |text: &str| without_name(text, "ada", "removed-7");
+        assert_eq!(without("ada is student"), "removed-7 is student");
+        assert_eq!(without("a link for ada"), "a link for removed-7");
+        assert_eq!(
+            without("ada: 3 of 4, adam, ada.b, b-ada, (ada)"),
+            "removed-7: 3 of 4, adam, ada.b, b-ada, (removed-7)"
+        );
+    }
+}

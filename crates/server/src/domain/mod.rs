@@ -1,0 +1,169 @@
+//! Roles and their rights. Requests get their hands on the database through one of these only, and each offers what its
+//! role allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with
+//! their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler
+//! says whom it serves by the type it takes, and one that forgets to has nothing to read from.
+
+mod accounts;
+mod assignments;
+mod counts;
+mod courses;
+mod platforms;
+mod roles;
+mod submissions;
+mod view;
+
+pub use accounts::identity::{Link, NewSecret, NewToken, TokenInfo};
+pub use accounts::limits::{Transfer, TransferLimits};
+pub use accounts::password::Passwords;
+pub use assignments::settings::Settings;
+pub(crate) use assignments::settings::{moment, moment_schema};
+pub use assignments::suites::{Suites, is_file_name};
+pub use counts::Counts;
+pub use courses::import::MemberLine;
+pub use courses::members::MemberInfo;
+pub use platforms::choice::{LinkStep, LinkTarget};
+pub use platforms::launch::{LaunchTarget, LoginAnswer, LoginRequest};
+pub use platforms::platform::{RosterRead, RosterWish, ScoreInfo};
+pub use roles::admin::Admin;
+pub use roles::member::Member;
+pub use roles::person::{CourseOf, Person};
+pub use roles::remote::Remote;
+pub use roles::staff::{AssignmentChange, Staff};
+pub use roles::visitor::{Secrets, Visitor};
+pub use submissions::again::RegradeOrder;
+pub use submissions::failed::{AttemptChange, FailedScenes};
+pub use submissions::mark::{Overview, Request, StudentHistory};
+pub use submissions::regrade::{Change, Regrade, RegradeState};
+pub use submissions::standings::{ShortStanding, Standing};
+pub use submissions::submit::{SubmitResult, Upload};
+pub use view::{Account, Assignment, Course, Event, History, Mark, Queue, QueueWorker, ResultView, Submission};
+
+use crate::{
+    db::Database,
+    instruments::Instruments,
+    lti::Lti,
+    queue::{Notifier, QueuePolicy},
+    storage::Storage,
+    store::Store,
+};
+use axum_client_ip::ClientIpSource;
+use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
+use submissions::standings::SharedStandings;
+use tokio::sync::OnceCell;
+
+/// The parts of the service. Those that hold data are for this room alone; the rest everybody may read.
+#[derive(Debug, Clone)]
+pub struct App(Arc<Parts>);
+
+#[derive(Debug)]
+struct Parts {
+    database: Database,
+    store: Store,
+    notifier: Notifier,
+    /// The queue's patience.
+    policy: QueuePolicy,
+    /// Numbers for monitors.
+    counts: Counts,
+    /// Whether there is room, and whether it can be written.
+    storage: Storage,
+    /// Counts requests by account.
+    throttle: Throttle,
+    /// How classes stand, for many who ask at one time.
+    standings: SharedStandings,
+    /// Signs what is looked at again, and stands nowhere.
+    signing_key: OnceCell<String>,
+    instruments: Instruments,
+    options: Options,
+}
+
+/// How the service is to be.
+#[derive(Debug, Default)]
+pub struct Options {
+    /// The suites that come with the grader.
+    pub suites: Suites,
+    /// The grader, where there is one: it looks at suites before anybody is graded by them.
+    pub grader: Option<PathBuf>,
+    /// The page that checks traces in a browser, where the grader has it.
+    pub checker: Option<String>,
+    /// Where uploads wait until they are stored.
+    pub incoming: PathBuf,
+    /// Uploads are refused when fewer bytes are free on that disk.
+    pub low_water: u64,
+    /// The address that people know the service by.
+    pub public: String,
+    /// Where a request's own address is found: the other end of its connection, or a header of the proxy.
+    pub client_address: Option<ClientIpSource>,
+    /// How long a body may pause.
+    pub patience: Duration,
+    /// Requests of one account in a minute.
+    pub requests_per_minute: u32,
+    /// Transfers at one time, and bytes that are kept.
+    pub limits: TransferLimits,
+    /// The parts that signing in with passwords needs; nothing where that is not allowed.
+    pub passwords: Option<Passwords>,
+    /// Speaks with learning platforms.
+    pub lti: Arc<Lti>,
+}
+
+impl Deref for App {
+    type Target = Options;
+
+    fn deref(&self) -> &Options {
+        &self.0.options
+    }
+}
+
+pub use accounts::throttle::Throttle;
+pub use accounts::turns::ArchiveTurn;
+
+impl App {
+    /// Creates an app on this database and store.
+    pub fn new(
+        database: Database,
+        store: Store,
+        notifier: Notifier,
+        policy: QueuePolicy,
+        instruments: Instruments,
+        options: Options,
+    ) -> Self {
+        let storage = Storage::new(database.clone(), store.clone(), options.incoming.clone(), options.low_water);
+        let (counts, throttle) = (Counts::default(), Throttle::default());
+        let (signing_key, standings) = (OnceCell::new(), SharedStandings::default());
+        Self(Arc::new(Parts {
+            database,
+            store,
+            notifier,
+            policy,
+            counts,
+            storage,
+            throttle,
+            standings,
+            signing_key,
+            instruments,
+            options,
+        }))
+    }
+
+    /// Returns the server's counts about itself.
+    pub fn instruments(&self) -> &Instruments {
+        &self.0.instruments
+    }
+
+    /// Returns a link that signs in once, as people open it.
+    pub fn welcome_address(&self, secret: &NewSecret) -> String {
+        format!("{}/welcome/{}", self.public, secret.reveal())
+    }
+
+    /// Returns whether people come by HTTPS.
+    pub fn is_secure(&self) -> bool {
+        self.public.starts_with("https://")
+    }
+
+    /// Checks that there is room for an upload.
+    ///
+    /// # Errors
+    /// When the disk is nearly full.
+    pub fn ensure_room(&self) -> Result<(), crate::problem::Problem> {
+        self.0.storage.ensure_room()
+    }
+}

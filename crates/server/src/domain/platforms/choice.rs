@@ -1,0 +1,191 @@
+//! The choices of staff who came from a platform: which course theirs is here, and which assignment a link leads to.
+use crate::domain::{
+    Member, Person,
+    platforms::launch,
+    roles::admin,
+    view::{self, Assignment, Course, Entry},
+};
+use crate::{
+    db::DbError,
+    lti::{self, LtiRole},
+    problem::{Problem, ensure},
+    values,
+};
+
+/// The choices.
+#[derive(Debug, Clone)]
+pub enum LinkTarget {
+    /// The course, of those that one teaches, or a new one.
+    Course {
+        /// The platform.
+        platform: String,
+        /// The assignment's name there.
+        title: String,
+        /// A name for a new one.
+        slug: String,
+        /// Those that are there.
+        courses: Vec<Course>,
+    },
+    /// The assignment.
+    Assignment {
+        /// The course.
+        course: Course,
+        /// The name of the link there.
+        title: Option<String>,
+        /// Those that are there.
+        assignments: Vec<Assignment>,
+    },
+}
+
+/// The next step after an assignment was chosen.
+#[derive(Debug, Clone)]
+pub enum LinkStep {
+    /// Go to the assignment.
+    Assignment(String),
+    /// Send this to the platform: address, origins, and token.
+    Answer {
+        /// Where.
+        address: String,
+        /// The platform's origins: a page may send forms there, and they may lead on among them.
+        origins: String,
+        /// The signed answer.
+        token: String,
+    },
+}
+
+impl Person {
+    /// Returns the choices.
+    ///
+    /// # Errors
+    /// When there is nothing of this secret for this person.
+    pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
+        let Some(place) = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await? else {
+            let context = &pending.arrival.context;
+            let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
+            let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
+            let slug = slug_of(context.label.as_deref().unwrap_or(&title));
+            let statement = "SELECT course.slug, course.title FROM course
+                JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
+                ORDER BY course.slug";
+            let courses = transaction.all(statement, values![self.account.id]).await?;
+            return Ok(LinkTarget::Course {
+                platform: pending.platform.name,
+                title: title.trim().to_owned(),
+                slug,
+                courses,
+            });
+        };
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+            WHERE course = ? ORDER BY id";
+        let assignments = transaction.all(statement, values![place.course]).await?;
+        Ok(LinkTarget::Assignment {
+            course: Course { slug: place.slug, title: place.title },
+            title: pending.arrival.resource.and_then(|resource| resource.title),
+            assignments,
+        })
+    }
+
+    /// Connects the platform's course with one of those that this person teaches, or with a new one.
+    ///
+    /// # Errors
+    /// When there is no such course, or one of the new one's name.
+    pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
+        if launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?.is_some() {
+            return Ok(());
+        }
+        let course = match known {
+            Some(slug) => {
+                let statement = "SELECT course.id FROM course
+                    JOIN member ON member.course = course.id AND member.account = ? AND member.role = 'staff'
+                    WHERE course.slug = ?";
+                let found = transaction.row(statement, values![self.account.id, slug]).await?;
+                found.ok_or_else(|| Problem::not_found("course"))?.int("id")?
+            }
+            None => admin::make_course(&mut transaction, new).await?,
+        };
+        let arrival = &pending.arrival;
+        let title = arrival.context.title.as_deref().unwrap_or(&arrival.context.id);
+        let statement =
+            "INSERT INTO platform_course (platform, deployment, context, title, course, memberships, created_at)
+            VALUES (?, ?, ?, ?, ?, ?, {now}) RETURNING id";
+        let (platform, memberships) = (pending.platform.id, arrival.memberships.as_deref());
+        let values = values![platform, &arrival.deployment, &arrival.context.id, title, course, memberships];
+        let made = transaction.one(statement, values).await?.int("id")?;
+        // This session was begun by the platform's word, and ended all others of an account that was a student's.
+        let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
+            ON CONFLICT (platform_course, account) DO NOTHING";
+        transaction.execute(statement, values![made, self.account.id]).await?;
+        let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
+            ON CONFLICT (course, account) DO NOTHING";
+        transaction.execute(statement, values![course, self.account.id, LtiRole::Staff.name(), platform]).await?;
+        let text = format!("{} of {} is this course", arrival.context.id, pending.platform.name);
+        let entry = Entry { course: Some(course), ..Entry::new("platform", self.account.id, &text) };
+        view::note(&mut transaction, &entry).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Makes the link lead to an assignment; of a link that the platform asks for, the answer that it waits for.
+    ///
+    /// # Errors
+    /// When this person does not teach the course, or it has no such assignment.
+    pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<LinkStep, Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
+        let place = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?;
+        let place = place.ok_or_else(|| Problem::not_found("course"))?;
+        let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
+        let staff = transaction.row(statement, values![place.course, self.account.id]).await?;
+        ensure(staff.is_some(), Problem::not_allowed("this is for the course's staff"))?;
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+                WHERE course = ? AND slug = ?";
+        let found: Option<Assignment> = transaction.find(statement, values![place.course, slug]).await?;
+        let assignment = found.ok_or_else(|| Problem::not_found("assignment"))?;
+        let arrival = &pending.arrival;
+        let text = format!("a link of {} leads to {}", pending.platform.name, assignment.slug);
+        let (course, assignment_id) = (Some(place.course), Some(assignment.id));
+        let entry = Entry::new("platform", self.account.id, &text);
+        view::note(&mut transaction, &Entry { course, assignment: assignment_id, ..entry }).await?;
+        let Some(wanted) = &arrival.deep_linking else {
+            let resource = arrival.resource.as_ref().ok_or_else(Problem::fault)?;
+            let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
+            launch::columns(&mut transaction, link, arrival).await?;
+            transaction.commit().await?;
+            return Ok(LinkStep::Assignment(format!("/c/{}/a/{}", place.slug, assignment.slug)));
+        };
+        transaction.commit().await?;
+        let over_http = self.app.lti.over_http();
+        let Some(address) = pending.platform.service(&wanted.deep_link_return_url, over_http) else {
+            return Err(Problem::refused_launch("the platform wants the answer at a host that no administrator named"));
+        };
+        let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
+        let token = lti::deep_linking_response(&self.app.0.database, &pending.platform, arrival, &launch, item).await?;
+        let origins = pending.platform.origins(over_http);
+        Ok(LinkStep::Answer { address: address.into(), origins, token })
+    }
+}
+
+/// Returns a name for addresses, to begin with.
+fn slug_of(title: &str) -> String {
+    let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
+    let text: String = title.chars().map(plain).take(60).collect();
+    text.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")
+}
+
+impl Member {
+    /// Returns the platforms from which people come into this course.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn platforms(&self) -> Result<Vec<String>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT DISTINCT platform.name FROM platform_course
+            JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+            WHERE platform_course.course = ? ORDER BY platform.name";
+        let rows = transaction.rows(statement, values![self.course]).await?;
+        Ok(rows.iter().map(|row| row.text("name")).collect::<Result<_, DbError>>()?)
+    }
+}

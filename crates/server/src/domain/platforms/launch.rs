@@ -1,0 +1,513 @@
+//! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in
+//! as who they are here, in the course that belongs to theirs there.
+use crate::domain::{
+    App, NewSecret, Visitor,
+    accounts::identity::{self, Way},
+    accounts::throttle,
+    view::{self, Entry},
+};
+use crate::{
+    db::{DbError, FromRow, Transaction, from_row},
+    lti::{Arrival, LtiPerson, LtiRole, Message, Platform, Rejection, score},
+    problem::{Problem, ensure},
+    secret::{hex, random_hex},
+    values,
+};
+use base64::{Engine, prelude::BASE64_URL_SAFE_NO_PAD as URL_SAFE_NO_PAD};
+use ring::hmac;
+use serde::Deserialize;
+use std::time::Instant;
+use url::Url;
+
+/// How long a sign-in may take, in milliseconds.
+const LOGIN: i64 = 10 * 60 * 1000;
+
+/// How long staff may take to choose.
+const CHOICE: i64 = 3600 * 1000;
+
+/// Sign-ins from one platform that an address may begin in a minute: a lecture hall may be one address.
+const LOGINS: u32 = 3000;
+
+/// The words of a platform about somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
+#[derive(Debug, Clone, Deserialize)]
+pub struct LoginRequest {
+    /// The platform's issuer.
+    pub iss: String,
+    /// Sent back as they are.
+    pub login_hint: String,
+    /// Where they want to go.
+    pub target_link_uri: Option<String>,
+    /// Sent back as they are, about the message.
+    pub lti_message_hint: Option<String>,
+    /// The platform's name for this service, where it says so.
+    pub client_id: Option<String>,
+    /// The deployment.
+    pub lti_deployment_id: Option<String>,
+}
+
+/// The next step of a browser.
+#[derive(Debug, Clone)]
+pub struct LoginAnswer {
+    /// Where to ask.
+    pub address: String,
+    /// The word that the browser shows when it comes back.
+    pub browser: String,
+}
+
+/// Where somebody is to go, signed in.
+#[derive(Debug, Clone)]
+pub struct LaunchTarget {
+    /// The person's session.
+    pub session: NewSecret,
+    /// A path of this service.
+    pub to: String,
+}
+
+impl From<Rejection> for Problem {
+    fn from(refused: Rejection) -> Self {
+        Self::refused_launch(refused.to_string())
+    }
+}
+
+impl App {
+    /// Checks that people may come from platforms: their cookies have to reach this service from another site.
+    fn check_launchable(&self) -> Result<(), Problem> {
+        if self.is_secure() || self.lti.over_http() {
+            return Ok(());
+        }
+        let remedy = "start the server with --public-url https://...";
+        Err(Problem::conflict("people come from learning platforms by HTTPS only", remedy))
+    }
+
+    /// Returns the address that platforms send people to.
+    pub fn launch_address(&self) -> String {
+        format!("{}/lti/launch", self.public)
+    }
+}
+
+impl Visitor {
+    /// Returns the platform that somebody says they come from.
+    ///
+    /// # Errors
+    /// When nobody registered it.
+    pub async fn platform(&self, request: &LoginRequest) -> Result<Platform, Problem> {
+        self.app.check_launchable()?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, name, settings FROM platform
+            WHERE issuer = ? AND disabled_at IS NULL AND (CAST(? AS TEXT) IS NULL OR client = ?) ORDER BY id LIMIT 2";
+        let client = request.client_id.as_deref();
+        let rows = transaction.rows(statement, values![&request.iss, client, client]).await?;
+        match rows.as_slice() {
+            [row] => Ok(Platform::from_row(row)?),
+            [] => Err(Problem::refused_launch("no administrator has registered this platform")),
+            _ => Err(Problem::refused_launch("the platform is registered several times, and does not say which it is")),
+        }
+    }
+
+    /// Begins a sign-in, and says where to ask for it. What is to be known again is signed, and stands nowhere: anybody
+    /// may begin as many as they like.
+    ///
+    /// # Errors
+    /// When there are too many, or the database does not answer.
+    pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
+        let bucket = throttle::bucket(self.secrets.address, &platform.name);
+        if !self.app.0.throttle.pass(bucket, LOGINS, Instant::now()) {
+            return Err(Problem::too_many("too many people come from your address at this moment"));
+        }
+        // One word for several windows of a browser.
+        let is_word = |word: &String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
+        let known = self.secrets.browser.clone().filter(is_word);
+        let browser = known.unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
+        let key = self.app.signing_key().await?;
+        let mut transaction = self.app.0.database.read().await?;
+        let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
+        drop(transaction);
+        let state =
+            PendingLogin { platform: platform.id, expires_at: now + LOGIN, browser: identity::digest(&browser) };
+        let state = state.signed(&key);
+        let nonce = nonce(&key, &state);
+        let settings = &platform.settings;
+        let mut address = Url::parse(&settings.login_url).map_err(|_| Problem::fault())?;
+        address
+            .query_pairs_mut()
+            .append_pair("scope", "openid")
+            .append_pair("response_type", "id_token")
+            .append_pair("response_mode", "form_post")
+            .append_pair("prompt", "none")
+            .append_pair("client_id", &settings.client_id)
+            .append_pair("redirect_uri", &self.app.launch_address())
+            .append_pair("login_hint", &request.login_hint)
+            .append_pair("state", &state)
+            .append_pair("nonce", &nonce);
+        if let Some(hint) = &request.lti_message_hint {
+            address.query_pairs_mut().append_pair("lti_message_hint", hint);
+        }
+        Ok(LoginAnswer { address: address.into(), browser })
+    }
+
+    /// Signs in whom a platform tells of, in answer to a sign-in that this browser began.
+    ///
+    /// # Errors
+    /// When the answer is none of ours, none of the platform's, or nobody may come by it.
+    pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
+        let key = self.app.signing_key().await?;
+        let (login, platform) = self.login(&key, state).await?;
+        let nonce = identity::digest(&nonce(&key, state));
+        let message = self.app.lti.receive(&platform, token, &nonce).await?;
+        let Some(role) = message.person.role else {
+            return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
+        };
+        let mut transaction = self.app.0.database.begin().await?;
+        let expired = "DELETE FROM platform_login
+            WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
+        transaction.execute(expired, values![]).await?;
+        let statement = "INSERT INTO platform_login (state, expires_at) VALUES (?, ?) ON CONFLICT (state) DO NOTHING";
+        let used = transaction.execute(statement, values![identity::digest(state), login.expires_at]).await?;
+        ensure(used > 0, unknown_login())?;
+        let launched = arrive(&mut transaction, &platform, &message, role).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        Ok(launched)
+    }
+
+    /// Returns the sign-in that this browser began, and the platform that was asked.
+    async fn login(&self, key: &hmac::Key, state: &str) -> Result<(PendingLogin, Platform), Problem> {
+        let login = PendingLogin::read(key, state).ok_or_else(unknown_login)?;
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, name, settings FROM platform
+            WHERE id = ? AND disabled_at IS NULL AND CAST(? AS {int}) > {now}
+               AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
+        let values = values![login.platform, login.expires_at, identity::digest(state)];
+        let platform = transaction.find(statement, values).await?.ok_or_else(unknown_login)?;
+        let Some(browser) = &self.secrets.browser else {
+            return Err(Problem::refused_launch("your browser did not send the cookie of this sign-in"));
+        };
+        // Begun in another browser: somebody wants to sign this one in as somebody else.
+        if login.browser != identity::digest(browser) {
+            return Err(Problem::refused_launch("this sign-in was begun in another browser"));
+        }
+        Ok((login, platform))
+    }
+}
+
+fn unknown_login() -> Problem {
+    Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago")
+}
+
+/// A sign-in that a platform was asked for: answered once, by the same browser, and soon.
+struct PendingLogin {
+    platform: i64,
+    expires_at: i64,
+    /// The digest of the browser's word.
+    browser: String,
+}
+
+impl PendingLogin {
+    /// Returns the value as the platform sends it back, in words that nobody else can make.
+    fn signed(&self, key: &hmac::Key) -> String {
+        let Self { platform, expires_at, browser } = self;
+        let words = format!("{platform}.{expires_at}.{browser}.{}", random_hex());
+        format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(key, words.as_bytes())))
+    }
+
+    fn read(key: &hmac::Key, state: &str) -> Option<Self> {
+        let (words, tag) = state.rsplit_once('.')?;
+        hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
+        let mut words = words.split('.');
+        let (platform, expires_at) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
+        Some(Self { platform, expires_at, browser: words.next()?.to_owned() })
+    }
+}
+
+/// Returns the word by which the platform's answer to a sign-in is known.
+fn nonce(key: &hmac::Key, state: &str) -> String {
+    hex(hmac::sign(key, format!("nonce {state}").as_bytes()).as_ref())
+}
+
+impl App {
+    /// Returns the key by which the service knows again what it signed: the same for all servers of a database.
+    async fn signing_key(&self) -> Result<hmac::Key, Problem> {
+        let found = self.0.signing_key.get_or_try_init(async || {
+            let mut transaction = self.0.database.begin().await?;
+            let statement =
+                "INSERT INTO server_secret (name, value) VALUES ('signing', ?) ON CONFLICT (name) DO NOTHING";
+            transaction.execute(statement, values![NewSecret::new("").reveal()]).await?;
+            let statement = "SELECT value FROM server_secret WHERE name = 'signing'";
+            let value = transaction.one(statement, values![]).await?.text("value")?;
+            transaction.commit().await?;
+            Ok::<_, DbError>(value)
+        });
+        Ok(hmac::Key::new(hmac::HMAC_SHA256, found.await?.as_bytes()))
+    }
+}
+
+/// A course of a platform that is known here.
+pub(in crate::domain) struct Place {
+    pub(in crate::domain) id: i64,
+    pub(in crate::domain) course: i64,
+    pub(in crate::domain) slug: String,
+    pub(in crate::domain) title: String,
+}
+
+from_row! { Place { id, course, slug, title } }
+
+/// Returns the course here from which somebody comes there.
+pub(in crate::domain) async fn place(
+    transaction: &mut Transaction,
+    platform: i64,
+    arrival: &Arrival,
+) -> Result<Option<Place>, DbError> {
+    let statement = "SELECT platform_course.id, platform_course.course, course.slug, course.title FROM platform_course
+        JOIN course ON course.id = platform_course.course
+        WHERE platform_course.platform = ? AND platform_course.deployment = ? AND platform_course.context = ?";
+    transaction.find(statement, values![platform, &arrival.deployment, &arrival.context.id]).await
+}
+
+/// Finds or makes the account, brings its role up to date, and says where it is to go.
+async fn arrive(
+    transaction: &mut Transaction,
+    platform: &Platform,
+    message: &Message,
+    role: LtiRole,
+) -> Result<LaunchTarget, Problem> {
+    let arrival = &message.arrival;
+    let staff = role == LtiRole::Staff;
+    let Some(Place { id, course, slug, .. }) = place(transaction, platform.id, arrival).await? else {
+        ensure(staff, Problem::refused_launch("this course is not connected with the grading server yet"))?;
+        let account = account(transaction, platform, &message.person).await?;
+        return choose(transaction, platform, arrival, account).await;
+    };
+    let account = account(transaction, platform, &message.person).await?;
+    if let Some(memberships) = &arrival.memberships {
+        let statement = "UPDATE platform_course SET memberships = ? WHERE id = ?";
+        transaction.execute(statement, values![memberships, id]).await?;
+    }
+    enrol(transaction, platform.id, id, course, account, role).await?;
+    let Some(resource) = &arrival.resource else {
+        ensure(staff, Problem::refused_launch("links are made by who teaches the course"))?;
+        return choose(transaction, platform, arrival, account).await;
+    };
+    let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
+        JOIN assignment ON assignment.id = platform_link.assignment
+        WHERE platform_link.platform_course = ? AND platform_link.resource = ?";
+    let link = transaction.row(statement, values![id, &resource.id]).await?;
+    let link = match link {
+        Some(link) => Some((link.int("id")?, link.text("slug")?)),
+        None => named(transaction, id, course, arrival).await?,
+    };
+    match link {
+        Some((link, assignment)) => {
+            columns(transaction, link, arrival).await?;
+            if !staff {
+                score::arrived(transaction, link, account).await?;
+            }
+            let session = identity::begin_session(transaction, account, Way::Own).await?;
+            Ok(LaunchTarget { session, to: format!("/c/{slug}/a/{assignment}") })
+        }
+        None if staff => choose(transaction, platform, arrival, account).await,
+        None => Err(Problem::refused_launch("no assignment was chosen for this link yet")),
+    }
+}
+
+/// Returns the assignment that a link names by itself: it was chosen by deep linking, or written by who made the link.
+async fn named(
+    transaction: &mut Transaction,
+    place: i64,
+    course: i64,
+    arrival: &Arrival,
+) -> Result<Option<(i64, String)>, DbError> {
+    let (Some(slug), Some(resource)) = (&arrival.assignment, &arrival.resource) else { return Ok(None) };
+    let found =
+        transaction.row("SELECT id FROM assignment WHERE course = ? AND slug = ?", values![course, slug]).await?;
+    let Some(found) = found else { return Ok(None) };
+    let link = make_link(transaction, place, &resource.id, found.int("id")?).await?;
+    Ok(Some((link, slug.clone())))
+}
+
+/// Makes a link lead to an assignment.
+pub(in crate::domain) async fn make_link(
+    transaction: &mut Transaction,
+    place: i64,
+    resource: &str,
+    assignment: i64,
+) -> Result<i64, DbError> {
+    let statement =
+        "INSERT INTO platform_link (platform_course, resource, assignment, created_at) VALUES (?, ?, ?, {now})
+        ON CONFLICT (platform_course, resource) DO UPDATE SET assignment = excluded.assignment RETURNING id";
+    transaction.one(statement, values![place, resource, assignment]).await?.int("id")
+}
+
+/// Notes where scores of a link go, as the platform says today. A column that this service made stays.
+pub(in crate::domain) async fn columns(
+    transaction: &mut Transaction,
+    link: i64,
+    arrival: &Arrival,
+) -> Result<(), DbError> {
+    let statement =
+        "UPDATE platform_link SET line_item = coalesce(CAST(? AS TEXT), line_item), line_items = ? WHERE id = ?";
+    transaction.execute(statement, values![arrival.line_item.clone(), arrival.line_items.clone(), link]).await.map(drop)
+}
+
+/// Signs staff in, and has them choose: a course, an assignment, or a link.
+async fn choose(
+    transaction: &mut Transaction,
+    platform: &Platform,
+    arrival: &Arrival,
+    account: i64,
+) -> Result<LaunchTarget, Problem> {
+    let secret = NewSecret::new("");
+    let text = serde_json::to_string(arrival).map_err(|_| Problem::fault())?;
+    let expired = "DELETE FROM platform_choice
+        WHERE digest IN (SELECT digest FROM platform_choice WHERE expires_at < {now} {skip locked})";
+    transaction.execute(expired, values![]).await?;
+    let statement =
+        "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
+    transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE]).await?;
+    // The choice may make a student's account that of staff.
+    if !identity::is_trusted(transaction, account).await? {
+        identity::end_all(transaction, account).await?;
+    }
+    let session = identity::begin_session(transaction, account, Way::Own).await?;
+    Ok(LaunchTarget { session, to: format!("/lti/choose/{}", secret.reveal()) })
+}
+
+async fn account(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {
+    let account = find_or_make(transaction, platform, person).await?;
+    let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
+    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is shut"))?;
+    // Otherwise anybody who runs a platform could do everything here.
+    if row.flag("is_admin")? {
+        return Err(Problem::refused_launch("you are an administrator here, and sign in here yourself"));
+    }
+    Ok(account)
+}
+
+/// Finds the account of somebody, made when they are new; their name as the platform has it. Never one that is there
+/// already under the same name or address: these are words that people choose for themselves.
+pub(in crate::domain) async fn find_or_make(
+    transaction: &mut Transaction,
+    platform: &Platform,
+    person: &LtiPerson,
+) -> Result<i64, DbError> {
+    let name = person.name.as_deref().map(tidy).filter(|name| !name.is_empty());
+    let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
+    let known = transaction.row(statement, values![&platform.settings.issuer, &person.subject]).await?;
+    if let Some(row) = known {
+        let account = row.int("account")?;
+        if let Some(name) = name {
+            let statement = "UPDATE account SET name = ? WHERE id = ? AND name <> ?";
+            transaction.execute(statement, values![&name, account, &name]).await?;
+        }
+        return Ok(account);
+    }
+    let mailbox = person.email.as_deref().and_then(|email| email.split('@').next());
+    let base = login_of(mailbox.or(name.as_deref()).unwrap_or_default());
+    for number in 1.. {
+        let login = match number {
+            1 => base.clone(),
+            2..=9 => format!("{base}-{number}"),
+            _ => format!("{base}-{}", &crate::secret::random_hex()[..8]),
+        };
+        let statement = "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
+            ON CONFLICT (login) DO NOTHING RETURNING id";
+        let made = transaction.row(statement, values![&login, name.as_ref().unwrap_or(&login)]).await?;
+        let Some(made) = made else { continue };
+        let account = made.int("id")?;
+        let statement = "INSERT INTO platform_account (issuer, subject, account, created_at) VALUES (?, ?, ?, {now})";
+        transaction.execute(statement, values![&platform.settings.issuer, &person.subject, account]).await?;
+        return Ok(account);
+    }
+    Err(DbError::Other("no login is free".to_owned()))
+}
+
+/// Returns a name as this service shows names.
+fn tidy(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
+    plain.trim().chars().take(200).collect::<String>().trim().to_owned()
+}
+
+/// Makes a login from whatever somebody is called.
+fn login_of(word: &str) -> String {
+    let plain = |c: char| match c.to_ascii_lowercase() {
+        c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
+        c if c.is_whitespace() => Some('.'),
+        _ => None,
+    };
+    let login: String = word.chars().filter_map(plain).take(40).collect();
+    let login = login.trim_matches(['-', '.', '_']);
+    if login.is_empty() { "user".to_owned() } else { login.to_owned() }
+}
+
+/// Makes somebody a member by a platform's word, or changes what they are; what staff said here stays.
+pub(in crate::domain) async fn enrol(
+    transaction: &mut Transaction,
+    platform: i64,
+    place: i64,
+    course: i64,
+    account: i64,
+    role: LtiRole,
+) -> Result<(), DbError> {
+    let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
+        ON CONFLICT (platform_course, account) DO NOTHING";
+    transaction.execute(statement, values![place, account]).await?;
+    let statement = "SELECT role, platform FROM member WHERE course = ? AND account = ?";
+    let was = transaction.row(statement, values![course, account]).await?;
+    if let Some(was) = &was
+        && (was.maybe_int("platform")?.is_none() || was.text("role")? == role.name())
+    {
+        return Ok(());
+    }
+    // A link or session from before must not do more than it could.
+    if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
+        identity::end_all(transaction, account).await?;
+    } else {
+        identity::end_vouched(transaction, account).await?;
+    }
+    let statement = "INSERT INTO member (course, account, role, platform, created_at) VALUES (?, ?, ?, ?, {now})
+        ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform";
+    transaction.execute(statement, values![course, account, role.name(), platform]).await?;
+    let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
+    let text = format!("{login} is {}, says a learning platform", role.name());
+    view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
+}
+
+/// The choice that staff has to make, and for whom it is.
+pub(in crate::domain) struct PendingLaunch {
+    pub(in crate::domain) platform: Platform,
+    pub(in crate::domain) arrival: Arrival,
+}
+
+/// Returns the choice that an account has to make by this secret.
+pub(in crate::domain) async fn pending(
+    transaction: &mut Transaction,
+    account: i64,
+    secret: &str,
+) -> Result<PendingLaunch, Problem> {
+    let statement = "SELECT platform.id, platform.name, platform.settings, platform_choice.arrival FROM platform_choice
+        JOIN platform ON platform.id = platform_choice.platform AND platform.disabled_at IS NULL
+        WHERE platform_choice.digest = ? AND platform_choice.account = ? AND platform_choice.expires_at > {now}";
+    let row = transaction.row(statement, values![identity::digest(secret), account]).await?;
+    let row = row.ok_or_else(|| Problem::not_found("choice"))?;
+    let arrival = serde_json::from_str(&row.text("arrival")?).map_err(|_| Problem::fault())?;
+    Ok(PendingLaunch { platform: Platform::from_row(&row)?, arrival })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logins_are_made_of_what_people_are_called() {
+        for (word, login) in [
+            ("Ada.Lovelace", "ada.lovelace"),
+            ("Ada Lovelace", "ada.lovelace"),
+            ("-x-", "x"),
+            ("\u{5d0}\u{5d3}\u{5d4}", "user"),
+            ("a'; DROP TABLE", "a.drop.table"),
+            ("", "user"),
+        ] {
+            assert_eq!(login_of(word), login, "{word}");
+            assert!(identity::check_slug("a login", &login_of(word)).is_ok());
+        }
+        assert_eq!(tidy(" A\nB\u{0} "), "A B");
+    }
+}

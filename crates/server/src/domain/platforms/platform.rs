@@ -1,0 +1,278 @@
+//! Platforms, as administrators register them, and what staff sees and does of them.
+use crate::domain::{
+    Admin, App, Staff,
+    accounts::identity,
+    platforms::launch::{enrol, find_or_make},
+};
+use crate::{
+    db::{DbError, FromRow, Row, read_row},
+    lti::{self, Platform, PlatformWish, score},
+    problem::{Problem, ensure},
+    values,
+};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use utoipa::ToSchema;
+
+/// The result of reading a roster.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
+pub struct RosterRead {
+    /// Members that the platforms told of.
+    pub members: usize,
+    /// Members who left.
+    pub left: usize,
+    /// The logins of those who were no members before.
+    pub comes: Vec<String>,
+    /// The logins of those who left.
+    pub goes: Vec<String>,
+}
+
+/// The use that is to be made of a roster.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum RosterWish {
+    /// Nothing: who would come and go.
+    Preview,
+    /// The roster counts, unless many would leave.
+    Apply,
+    /// The roster counts, even if many leave.
+    Confirmed,
+}
+
+/// A score that a platform was told of somebody's work.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct ScoreInfo {
+    /// The platform.
+    pub platform: String,
+    /// The student.
+    pub login: String,
+    /// The score that it is to know.
+    #[schema(value_type = Object)]
+    pub score: Value,
+    /// When that became so, in milliseconds since 1970.
+    pub stamp: i64,
+    /// When it took it; nothing while it has not.
+    pub sent_at: Option<i64>,
+    /// Why it has not.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fault: Option<String>,
+}
+
+impl App {
+    /// Returns the service's public keys.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn platform_keys(&self) -> Result<Value, Problem> {
+        Ok(lti::published(&self.0.database).await?)
+    }
+}
+
+impl Admin {
+    /// Returns all platforms.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn platforms(&self) -> Result<Vec<Platform>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name";
+        Ok(transaction.all(statement, values![]).await?)
+    }
+
+    /// Registers a platform, or changes it.
+    ///
+    /// # Errors
+    /// When something in it makes no sense.
+    pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
+        identity::check_slug("a platform's name", name)?;
+        wish.check(self.app.lti.over_http())?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT name FROM platform WHERE issuer = ? AND client = ? AND name <> ?";
+        let taken = transaction.row(statement, values![&wish.issuer, &wish.client_id, name]).await?;
+        if let Some(taken) = taken {
+            let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
+            return Err(Problem::conflict(detail, "change that one"));
+        }
+        // Accounts belong to an issuer's people: they must not become those of another.
+        let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
+        if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
+            return Err(Problem::conflict("another issuer is registered by this name", "give it another name"));
+        }
+        let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
+        let statement = "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
+            ON CONFLICT (name) DO UPDATE SET client = excluded.client, settings = excluded.settings,
+               disabled_at = NULL
+            RETURNING id, name, settings";
+        let row = transaction.one(statement, values![name, &wish.issuer, &wish.client_id, text]).await?;
+        let text = format!("{name}: {}, client {}", wish.issuer, wish.client_id);
+        self.note(&mut transaction, "platform", &text).await?;
+        transaction.commit().await?;
+        Ok(Platform::from_row(&row)?)
+    }
+
+    /// Shuts a platform: nobody comes from it any more, and nothing goes there. Accounts and courses stay.
+    ///
+    /// # Errors
+    /// When there is none of this name.
+    pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
+        let shut = transaction.execute(statement, values![name]).await?;
+        ensure(shut > 0, Problem::not_found("platform"))?;
+        self.note(&mut transaction, "platform", &format!("{name} is shut")).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Makes a new key, which signs from an hour on; the one before it is told of until the next.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn new_platform_key(&self) -> Result<(), Problem> {
+        lti::new_key(&self.app.0.database).await?;
+        let mut transaction = self.app.0.database.begin().await?;
+        self.note(&mut transaction, "platform", "a new key for learning platforms").await?;
+        Ok(transaction.commit().await?)
+    }
+}
+
+impl Staff {
+    /// Reads who is in the course from the platforms that it is connected with. Who is not told of any more leaves,
+    /// unless staff made them members; what they handed in stays. The person who asks stays, and a list of nobody
+    /// changes nothing.
+    ///
+    /// # Errors
+    /// When no platform tells, one does not answer, or more than a third would leave without a confirmation; then
+    /// nothing of what it tells changes.
+    pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
+        let app = &self.app;
+        let mut transaction = app.0.database.read().await?;
+        let statement = "SELECT platform_course.id AS place, platform_course.memberships, platform.id, platform.name,
+               platform.settings
+            FROM platform_course
+            JOIN platform ON platform.id = platform_course.platform AND platform.disabled_at IS NULL
+            WHERE platform_course.course = ? AND platform_course.memberships IS NOT NULL
+            ORDER BY platform_course.id";
+        let places = transaction.rows(statement, values![self.course]).await?;
+        drop(transaction);
+        if places.is_empty() {
+            let detail = "no learning platform tells who is in this course";
+            return Err(Problem::conflict(detail, "open an assignment from the platform once, as who teaches there"));
+        }
+        let mut read = RosterRead::default();
+        for row in &places {
+            let (place, platform) = (row.int("place")?, Platform::from_row(row)?);
+            let address = row.text("memberships")?;
+            let told = lti::fetch_roster(&app.lti.client, &app.0.database, &platform, &address).await;
+            let told = told.map_err(|fault| {
+                tracing::warn!(platform = platform.name, %fault, "a roster can't be read");
+                Problem::platform_failed(format!("{}: {fault}", platform.name))
+            })?;
+            let one = self.apply_roster(place, &platform, &told, wish).await?;
+            read.members += one.members;
+            read.left += one.left;
+            read.comes.extend(one.comes);
+            read.goes.extend(one.goes);
+        }
+        Ok(read)
+    }
+
+    async fn apply_roster(
+        &self,
+        place: i64,
+        platform: &Platform,
+        told: &[lti::LtiPerson],
+        wish: RosterWish,
+    ) -> Result<RosterRead, Problem> {
+        let course = self.course;
+        let mut transaction = self.begin().await?;
+        let members = "SELECT account.login FROM member JOIN account ON account.id = member.account
+            WHERE member.course = ? ORDER BY account.login";
+        let logins = |rows: Vec<Row>| rows.iter().map(|row| row.text("login")).collect::<Result<BTreeSet<_>, _>>();
+        let before = logins(transaction.rows(members, values![course]).await?)?;
+        let mut present = BTreeSet::new();
+        for person in told {
+            let Some(role) = person.role else { continue };
+            let account = find_or_make(&mut transaction, platform, person).await?;
+            let row =
+                transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
+            present.insert(account);
+            // Neither becomes more by a platform's word.
+            if row.flag("is_admin")? || row.maybe_int("disabled_at")?.is_some() {
+                continue;
+            }
+            enrol(&mut transaction, platform.id, place, course, account, role).await?;
+        }
+        // An answer of nobody is a filter, or a fault.
+        if present.is_empty() {
+            return Ok(RosterRead::default());
+        }
+        let statement = "SELECT account FROM platform_member WHERE platform_course = ? ORDER BY account";
+        let known = transaction.rows(statement, values![place]).await?;
+        for row in &known {
+            let account = row.int("account")?;
+            if present.contains(&account) || account == self.account.id {
+                continue;
+            }
+            let statement = "DELETE FROM platform_member WHERE platform_course = ? AND account = ?";
+            transaction.execute(statement, values![place, account]).await?;
+            let statement = "DELETE FROM member WHERE course = ? AND account = ? AND platform = ?
+                AND NOT EXISTS (SELECT 1 FROM platform_member
+                    JOIN platform_course ON platform_course.id = platform_member.platform_course
+                    WHERE platform_course.course = member.course AND platform_member.account = member.account)";
+            transaction.execute(statement, values![course, account, platform.id]).await?;
+        }
+        let after = logins(transaction.rows(members, values![course]).await?)?;
+        let (comes, goes) = (&after - &before, &before - &after);
+        let (members, left) = (present.len(), goes.len());
+        let read = RosterRead { members, left, comes: comes.into_iter().collect(), goes: goes.into_iter().collect() };
+        if wish == RosterWish::Preview {
+            return Ok(read);
+        }
+        if wish == RosterWish::Apply && left * 3 > before.len() {
+            return Err(Problem::conflict(
+                format!("{left} of {} members would leave: {}", before.len(), read.goes.join(", ")),
+                "look at who comes and goes (preview), and confirm it (confirm)",
+            ));
+        }
+        let text = format!("{members} members by {}, {left} left", platform.name);
+        self.note(&mut transaction, "roster", None, &text).await?;
+        transaction.commit().await?;
+        Ok(read)
+    }
+
+    /// Returns the messages to platforms about an assignment's scores.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn scores(&self, slug: &str) -> Result<Vec<ScoreInfo>, Problem> {
+        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let statement = "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
+               platform_score.sent_at, platform_score.fault
+            FROM platform_score
+            JOIN platform_link ON platform_link.id = platform_score.link
+            JOIN platform_course ON platform_course.id = platform_link.platform_course
+            JOIN platform ON platform.id = platform_course.platform
+            JOIN account ON account.id = platform_score.account
+            WHERE platform_link.assignment = ? ORDER BY platform.name, account.login, platform_link.id";
+        let rows = transaction.rows(statement, values![assignment.id]).await?;
+        let read = |row: &Row| {
+            let score = serde_json::from_str(&row.text("content")?).unwrap_or_default();
+            Ok(read_row!(row => ScoreInfo { platform, login, stamp, sent_at, fault; score }))
+        };
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Has all scores of an assignment sent once more, also those that platforms took; how many these are.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn send_scores(&self, slug: &str) -> Result<usize, Problem> {
+        let assignment = self.assignment(slug).await?;
+        let mut transaction = self.begin().await?;
+        let count = score::send_all(&mut transaction, assignment.id, true).await?;
+        let text = format!("{count} scores of {slug} are sent again");
+        self.note(&mut transaction, "scores", Some(assignment.id), &text).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        Ok(count)
+    }
+}

@@ -1,0 +1,222 @@
+//! Administrators.
+use crate::domain::{
+    App, NewSecret,
+    accounts::identity::{self, Link, NewToken, TokenInfo, Way},
+    courses::members::PEOPLE,
+    view::{self, Account, Course, Entry, Event, Queue},
+};
+use crate::{
+    db::{DbError, Transaction},
+    problem::{Problem, ensure},
+    values,
+};
+
+/// Somebody who may do everything.
+pub struct Admin {
+    pub(crate) account: Account,
+    pub(crate) app: App,
+}
+
+/// Makes a course of this name and title, and returns its number.
+pub(in crate::domain) async fn make_course(
+    transaction: &mut Transaction,
+    (slug, title): (&str, &str),
+) -> Result<i64, Problem> {
+    identity::check_slug("a course's name", slug)?;
+    identity::check_title("a title", title)?;
+    let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
+        ON CONFLICT (slug) DO NOTHING RETURNING id";
+    let made = transaction.row(statement, values![slug, title]).await?;
+    let made = made.ok_or_else(|| Problem::conflict("there is a course of this name", "give it another name"))?;
+    Ok(made.int("id")?)
+}
+
+impl Admin {
+    /// Writes into the audit log.
+    pub(in crate::domain) async fn note(
+        &self,
+        transaction: &mut Transaction,
+        kind: &'static str,
+        text: &str,
+    ) -> Result<(), DbError> {
+        view::note(transaction, &Entry::new(kind, self.account.id, text)).await
+    }
+
+    /// Makes a course.
+    ///
+    /// # Errors
+    /// When there is one of this name.
+    pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        make_course(&mut transaction, (slug, title)).await?;
+        self.note(&mut transaction, "course", &format!("{slug} ({title})")).await?;
+        transaction.commit().await?;
+        Ok(Course { slug: slug.to_owned(), title: title.to_owned() })
+    }
+
+    /// Accounts whose login or name has these words, behind the one of this login: a page of them, and whether there
+    /// are more.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<Account>, bool), Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
+               AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
+            ORDER BY login LIMIT ?";
+        let (words, most) = (words.trim(), PEOPLE + 1);
+        let values = values![after, words.to_lowercase(), words, most];
+        let mut accounts: Vec<Account> = transaction.all(statement, values).await?;
+        let has_more = accounts.len() as i64 == most;
+        accounts.truncate(PEOPLE as usize);
+        Ok((accounts, has_more))
+    }
+
+    /// Returns all accounts.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn accounts(&self) -> Result<Vec<Account>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL ORDER BY login";
+        Ok(transaction.all(statement, values![]).await?)
+    }
+
+    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once. One that was
+    /// shut is open again.
+    ///
+    /// # Errors
+    /// When a name is none.
+    pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<Link, Problem> {
+        identity::check_slug("a login", login)?;
+        identity::check_title("a name", name)?;
+        ensure(is_admin || login != self.account.login, Problem::own_account())?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT id, login, name, is_admin FROM account WHERE login = ? {for update}";
+        let was: Option<Account> = transaction.find(statement, values![login]).await?;
+        let statement = "INSERT INTO account (login, name, is_admin, created_at) VALUES (?, ?, ?, {now})
+            ON CONFLICT (login) DO UPDATE SET name = excluded.name, is_admin = excluded.is_admin,
+               disabled_at = NULL
+            RETURNING id";
+        let account = transaction.one(statement, values![login, name, is_admin]).await?.int("id")?;
+        if was.is_some_and(|was| was.is_admin != is_admin) {
+            identity::end_all(&mut transaction, account).await?;
+        }
+        let link = identity::new_link(&mut transaction, account, Some(self.account.id), Way::Own).await?;
+        let text = format!("{login}{}; a link to sign in", if is_admin { " is an administrator" } else { "" });
+        self.note(&mut transaction, "account", &text).await?;
+        transaction.commit().await?;
+        Ok(Link { link: Some(self.app.welcome_address(&link)) })
+    }
+
+    /// Shuts an account: it can't sign in any more, and what it handed in stays.
+    ///
+    /// # Errors
+    /// When there is none, or it is one's own.
+    pub async fn disable_account(&self, login: &str) -> Result<(), Problem> {
+        ensure(login != self.account.login, Problem::own_account())?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE account SET disabled_at = {now} WHERE login = ? AND disabled_at IS NULL RETURNING id";
+        let row = transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("account"))?;
+        identity::end_all(&mut transaction, row.int("id")?).await?;
+        self.note(&mut transaction, "account", &format!("{login} is shut")).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Returns the tokens of workers.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn worker_tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement =
+            "SELECT id, name, created_at FROM token WHERE account IS NULL AND revoked_at IS NULL ORDER BY id";
+        Ok(transaction.all(statement, values![]).await?)
+    }
+
+    /// Makes a token for workers.
+    ///
+    /// # Errors
+    /// When its name is none.
+    pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
+        identity::check_slug("a worker's name", name)?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let token = identity::new_token(&mut transaction, None, name, self.account.id, Way::Own).await?;
+        self.note(&mut transaction, "worker token", &format!("{name} ({})", token.info.id)).await?;
+        transaction.commit().await?;
+        Ok(token)
+    }
+
+    /// Revokes a token of workers.
+    ///
+    /// # Errors
+    /// When there is none of this number.
+    pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL";
+        let revoked = transaction.execute(statement, values![id]).await?;
+        ensure(revoked > 0, Problem::not_found("token"))?;
+        self.note(&mut transaction, "worker token", &format!("{id} is revoked")).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Returns the queue and the workers.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn queue(&self) -> Result<Queue, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(view::queue(&mut transaction, &self.app).await?)
+    }
+
+    /// Returns everything that happened before the event of this number, latest first.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+            LEFT JOIN account ON account.id = event.actor WHERE event.id < ? ORDER BY event.id DESC LIMIT 200";
+        Ok(transaction.all(statement, values![before.unwrap_or(i64::MAX)]).await?)
+    }
+}
+
+impl App {
+    /// Returns the link of a fresh server: signs its first administrator in. Nothing once there is one who has signed
+    /// in.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn first_link(&self) -> Result<Option<NewSecret>, Problem> {
+        let mut transaction = self.0.database.begin().await?;
+        let statement =
+            "INSERT INTO account (login, name, is_admin, created_at) VALUES ('admin', 'Administrator', 1, {now})
+            ON CONFLICT (login) DO NOTHING";
+        transaction.execute(statement, values![]).await?;
+        let statement = "SELECT account.id FROM account JOIN sign_in_link ON sign_in_link.account = account.id
+            WHERE account.is_admin = 1 AND sign_in_link.used_at IS NOT NULL";
+        if transaction.row(statement, values![]).await?.is_some() {
+            return Ok(None);
+        }
+        let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
+        let account = transaction.one(statement, values![]).await?.int("id")?;
+        // Another server that starts at the same time printed one, too.
+        let link = identity::further_link(&mut transaction, account, None, Way::Own).await?;
+        transaction.commit().await?;
+        Ok(Some(link))
+    }
+
+    /// Returns a new link for an administrator, for anybody who can run programs on the server: the way back in.
+    ///
+    /// # Errors
+    /// When there is no such administrator.
+    pub async fn admin_link(&self, login: &str) -> Result<NewSecret, Problem> {
+        let mut transaction = self.0.database.begin().await?;
+        let statement = "SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL";
+        let row =
+            transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("administrator"))?;
+        let link = identity::new_link(&mut transaction, row.int("id")?, None, Way::Own).await?;
+        transaction.commit().await?;
+        Ok(link)
+    }
+}

@@ -1,0 +1,217 @@
+//! A member of a course: a student, or staff who tries something out. They see their own submissions; staff sees all.
+use crate::domain::{
+    App,
+    view::{self, Account, Assignment, Entry, History, Submission},
+};
+use crate::{
+    db::{DbError, Transaction},
+    problem::Problem,
+    shown::{self, ShownGrade},
+    store::{Artifact, Digest, OpenArtifact},
+    task::OutputFile,
+    values,
+    worker::{PUBLISHED_PAGE, STAFF_PAGE},
+};
+use futures_util::StreamExt;
+
+/// The report that holds no group that its suite hides from students.
+const SHOWN: &str = "report.html";
+
+/// A member of a course.
+pub struct Member {
+    pub(crate) account: Account,
+    pub(in crate::domain) course: i64,
+    pub(crate) slug: String,
+    pub(crate) title: String,
+    pub(crate) is_staff: bool,
+    pub(crate) app: App,
+}
+
+impl Member {
+    /// Returns an entry of the course's audit log.
+    pub(in crate::domain) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
+        Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
+    }
+
+    /// Returns the assignments that they may see.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn assignments(&self) -> Result<Vec<Assignment>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+            WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id";
+        let assignments: Vec<Assignment> = transaction.all(statement, values![self.course, self.is_staff]).await?;
+        Ok(assignments.into_iter().map(|assignment| self.shown(assignment)).collect())
+    }
+
+    /// Returns an assignment as they may see it: which suite of the course it is graded by is staff's to know.
+    fn shown(&self, mut assignment: Assignment) -> Assignment {
+        assignment.settings.suite_archive.take_if(|_| !self.is_staff);
+        assignment
+    }
+
+    /// Returns one of the member's submissions.
+    ///
+    /// # Errors
+    /// When there is none.
+    pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
+        Ok(self.shown(self.read_at(slug).await?.1))
+    }
+
+    /// Begins a transaction that reads, and finds the assignment.
+    pub(in crate::domain) async fn read_at(&self, slug: &str) -> Result<(Transaction, Assignment), Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        Ok((transaction, assignment))
+    }
+
+    pub(in crate::domain) async fn find_assignment(
+        &self,
+        transaction: &mut Transaction,
+        slug: &str,
+    ) -> Result<Assignment, Problem> {
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+            WHERE course = ? AND slug = ? AND (visible = 1 OR ? = 1)";
+        let found = transaction.find(statement, values![self.course, slug, self.is_staff]).await?;
+        found.ok_or_else(|| Problem::not_found("assignment"))
+    }
+
+    /// Returns the member's own submissions to an assignment, newest first.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
+        let (mut transaction, assignment) = self.read_at(assignment).await?;
+        let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
+        for submission in &mut submissions {
+            if !self.is_staff {
+                submission.fault = None;
+            }
+            // Nobody has looked at what is hidden in it yet, which takes its files.
+            if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
+                *submission = self.find_submission(&mut transaction, submission.id).await?;
+                submission.grade.iter_mut().for_each(|grade| grade.outcome.files.clear());
+            } else {
+                self.withhold(submission).await?;
+            }
+        }
+        Ok(submissions)
+    }
+
+    /// Leaves out what the reader does not see: what is staff's, before it is published what the suite hides, and pages
+    /// that tell of another part of the grade than the points that the reader sees.
+    async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
+        let Some(grade) = submission.grade.as_mut() else { return Ok(()) };
+        let files = &mut grade.outcome.files;
+        files.retain(|file| self.is_staff || file.name != STAFF_PAGE);
+        if self.is_staff || submission.is_published {
+            // The page without hidden groups.
+            if files.iter().any(|file| file.name == PUBLISHED_PAGE) {
+                files.retain(|file| file.name != SHOWN);
+            }
+            return Ok(());
+        }
+        // Of what older versions graded nobody has looked yet.
+        let kept = match grade.outcome.shown.take() {
+            Some(kept) => kept,
+            None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
+        };
+        if let Some(shown) = ShownGrade::read(&kept) {
+            shown.cover(&mut grade.outcome, SHOWN);
+            grade.created_at = shown::hour(grade.created_at);
+            submission.is_withheld = true;
+            grade.outcome.shown = Some(kept);
+            submission.overrule();
+        }
+        Ok(())
+    }
+
+    pub(in crate::domain) async fn find_submission(
+        &self,
+        transaction: &mut Transaction,
+        id: i64,
+    ) -> Result<Submission, Problem> {
+        let found = view::submission(transaction, &self.app, self.course, id).await?;
+        let found = found.filter(|submission| self.is_staff || submission.account == self.account.id);
+        let mut submission = found.ok_or_else(|| Problem::not_found("submission"))?;
+        if !self.is_staff {
+            submission.fault = None;
+        }
+        self.withhold(&mut submission).await?;
+        Ok(submission)
+    }
+
+    /// Returns a submission: one of their own, or any of the course for staff.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn submission(&self, id: i64) -> Result<Submission, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        self.find_submission(&mut transaction, id).await
+    }
+
+    /// Returns how its grade came to be.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
+    }
+
+    /// Returns one of the reports on it, to be opened.
+    ///
+    /// # Errors
+    /// When there is none of this name.
+    pub async fn report(&self, id: i64, name: &str) -> Result<OutputFile, Problem> {
+        let submission = self.kept(id).await?;
+        submission
+            .grade
+            .and_then(|grade| grade.outcome.files.into_iter().find(|file| file.name == name))
+            .ok_or_else(|| Problem::not_found("report"))
+    }
+
+    /// Returns the upload, to be opened.
+    ///
+    /// # Errors
+    /// When they may see none of this number.
+    pub async fn upload(&self, id: i64) -> Result<(Submission, Artifact), Problem> {
+        let submission = self.kept(id).await?;
+        let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));
+        let digest: Digest = submission.digest.parse().map_err(|_| wrong("digest"))?;
+        let size = u64::try_from(submission.size).map_err(|_| wrong("size"))?;
+        Ok((submission, Artifact { digest, size }))
+    }
+
+    /// Returns a submission whose bytes are still there.
+    async fn kept(&self, id: i64) -> Result<Submission, Problem> {
+        let submission = self.submission(id).await?;
+        if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
+    }
+
+    /// Opens an artifact that they may see.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtifact, Problem> {
+        Ok(self.app.0.store.open(&artifact.digest).await?)
+    }
+
+    /// Returns the first bytes of an artifact that they may see.
+    ///
+    /// # Errors
+    /// When the store fails.
+    pub async fn beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
+        let mut pieces = self.open(artifact).await?.pieces;
+        let mut bytes = Vec::new();
+        while bytes.len() < most
+            && let Some(piece) = pieces.next().await
+        {
+            bytes.extend_from_slice(&piece?);
+        }
+        bytes.truncate(most);
+        Ok(bytes)
+    }
+}

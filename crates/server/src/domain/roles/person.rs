@@ -1,0 +1,111 @@
+//! Somebody who is signed in.
+use crate::domain::{
+    App,
+    accounts::identity::{self, NewToken, SessionState, TokenInfo, Way},
+    view::{Account, Course},
+};
+use crate::{
+    db::{DbError, FromRow, Row},
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use std::net::IpAddr;
+use utoipa::ToSchema;
+
+/// A course, and what somebody is in it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct CourseOf {
+    /// The course.
+    #[serde(flatten)]
+    pub course: Course,
+    /// `student`, `staff`, or `admin`.
+    pub role: String,
+}
+
+/// Somebody who is signed in.
+pub struct Person {
+    pub(crate) account: Account,
+    /// The browser's session; nothing where a token asks.
+    pub(in crate::domain) session: Option<SessionState>,
+    pub(in crate::domain) address: Option<IpAddr>,
+    pub(crate) app: App,
+}
+
+impl Person {
+    /// Returns whether they came in by a token, or by a session that one began.
+    pub fn is_by_token(&self) -> bool {
+        self.session.as_ref().is_none_or(|session| session.is_by_token)
+    }
+
+    /// Returns the session, where it is the person at a browser: what a token can do, ends with the token.
+    pub(in crate::domain) fn at_browser(&self) -> Result<&SessionState, Problem> {
+        let session = self.session.as_ref().filter(|_| !self.is_by_token());
+        session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
+    }
+
+    /// Returns the session if they signed in lately: anybody who finds an open browser makes no further ways in.
+    pub(in crate::domain) fn lately_at_browser(&self) -> Result<&SessionState, Problem> {
+        let session = self.at_browser()?;
+        match session.is_recent {
+            true => Ok(session),
+            false => Err(Problem::sign_in_again("you signed in more than twelve hours ago")),
+        }
+    }
+
+    /// Returns the courses that they may see.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let all: i64 = self.account.is_admin.into();
+        let statement = "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
+            LEFT JOIN member ON member.course = course.id AND member.account = ?
+            WHERE member.role IS NOT NULL OR ? = 1
+            ORDER BY course.slug";
+        let rows = transaction.rows(statement, values![self.account.id, all]).await?;
+        let read = |row: &Row| Ok(CourseOf { course: Course::from_row(row)?, role: row.text("role")? });
+        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+    }
+
+    /// Returns the person's tokens.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT id, name, created_at FROM token WHERE account = ? AND revoked_at IS NULL ORDER BY id";
+        Ok(transaction.all(statement, values![self.account.id]).await?)
+    }
+
+    /// Makes a token.
+    ///
+    /// # Errors
+    /// When its name is none, there are too many, or they did not sign in lately.
+    pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
+        identity::check_title("a token's name", name)?;
+        let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
+        let count = transaction.one(statement, values![self.account.id]).await?;
+        if count.int("n")? >= 50 {
+            return Err(Problem::conflict("an account has at most 50 tokens", "revoke those that nobody uses"));
+        }
+        let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;
+        transaction.commit().await?;
+        Ok(token)
+    }
+
+    /// Revokes one of their tokens.
+    ///
+    /// # Errors
+    /// When they have none of this number.
+    pub async fn revoke_token(&self, id: i64) -> Result<(), Problem> {
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL";
+        let revoked = transaction.execute(statement, values![id, self.account.id]).await?;
+        transaction.commit().await?;
+        if revoked == 0 { Err(Problem::not_found("token")) } else { Ok(()) }
+    }
+}

@@ -1,0 +1,226 @@
+//! A worker on another machine. It runs hostile programs, so it may be theirs one day: it can claim jobs, read what
+//! belongs to those that it holds, and say what became of them. It sees no course, no student and no other submission.
+use crate::domain::App;
+use crate::{
+    problem::{Problem, ensure},
+    queue::{Lease, Progress},
+    store::{Artifact, Digest, OpenArtifact},
+    task::{Outcome, Suite, Task},
+    values,
+    wire::{ClaimedJob, Manners},
+    worker::{JobSource, LocalSource, REPORTS, SourceError},
+};
+use std::path::Path;
+
+/// A worker with a token.
+pub struct Remote {
+    pub(crate) app: App,
+    token: i64,
+    worker: String,
+}
+
+/// The largest report.
+const MAX_FILE: u64 = 256 << 20;
+
+impl From<SourceError> for Problem {
+    fn from(error: SourceError) -> Self {
+        match error {
+            SourceError::Away(error) => {
+                tracing::warn!(error, "a worker was not answered");
+                Self::unavailable("the database or the store does not answer")
+            }
+            SourceError::Refused(error) => Self::invalid(error),
+            SourceError::Dismissed => {
+                Self::unknown_secret("worker token", "ask the server's administrator for a new one")
+            }
+        }
+    }
+}
+
+impl Remote {
+    pub(in crate::domain) fn new(app: App, id: i64, token: &str, name: &str) -> Self {
+        let plain: String = name.chars().filter(|c| c.is_ascii_alphanumeric() || "-_.".contains(*c)).take(80).collect();
+        Self { app, token: id, worker: format!("{token}/{plain}") }
+    }
+
+    fn source(&self) -> LocalSource {
+        let parts = &self.app.0;
+        LocalSource::new(
+            parts.database.first(),
+            parts.store.clone(),
+            parts.notifier.clone(),
+            parts.policy,
+            self.worker.clone(),
+        )
+        .with_token(self.token)
+    }
+
+    /// Returns whether a lease was given to this token: another's counts for nothing.
+    async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
+        let mut transaction = self.app.0.database.first().read().await?;
+        let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
+        let row = transaction.row(statement, values![lease.job, lease.attempt]).await?;
+        Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
+    }
+
+    /// Returns the next job, if there is one.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn claim(&self) -> Result<Option<ClaimedJob>, Problem> {
+        Ok(self.source().claim().await?)
+    }
+
+    /// Says that it is alive, with this many slots, or why it can't grade, and of which version it is.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
+        let fault = fault.map(|fault| plain(fault, 2000));
+        let source = self.source().with_version(plain(version, 60));
+        source.tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
+        let tick_every = self.app.0.policy.tick_every().as_millis();
+        let tick_every = u64::try_from(tick_every).unwrap_or(u64::MAX);
+        Ok(Manners { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
+    }
+
+    /// Extends a lease, and keeps how far the grading is.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<bool, Problem> {
+        Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
+    }
+
+    /// Gives a job back.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn release(&self, lease: &Lease) -> Result<bool, Problem> {
+        Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
+    }
+
+    /// Says that a try came to nothing.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
+        Ok(self.owns(lease).await? && self.source().fail(lease, &plain(fault, 2000)).await?.held)
+    }
+
+    /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this
+    /// job.
+    ///
+    /// # Errors
+    /// When it makes no sense.
+    pub async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<bool, Problem> {
+        if !self.owns(lease).await? {
+            return Ok(false);
+        }
+        let outcome = self.checked(lease, outcome).await?;
+        Ok(self.source().finish(lease, &outcome).await?.held)
+    }
+
+    async fn checked(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
+        let short = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
+        if !short(&outcome.code) || outcome.code == crate::task::JUDGE_ERROR {
+            return Err(Problem::invalid("the verdict's code is unknown"));
+        }
+        let seconds = Some(outcome.seconds.clone()).filter(|seconds| !seconds.is_empty());
+        for number in [&outcome.points, &outcome.max_points, &seconds].into_iter().flatten() {
+            let is_number = number.parse::<f64>().is_ok_and(f64::is_finite)
+                && number.len() <= 40
+                && number.bytes().all(|c| c.is_ascii_digit() || b"+-.eE".contains(&c));
+            ensure(is_number, Problem::invalid("points and seconds are numbers"))?;
+        }
+        let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
+        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MOST_POINTS))
+            && !(0.0..=most.min(MOST_POINTS)).contains(&points)
+        {
+            return Err(Problem::invalid("points lie between 0 and the most that could be had"));
+        }
+        let mut outcome = outcome.clone();
+        outcome.verdict = plain(&outcome.verdict, 200);
+        outcome.summary = plain(&outcome.summary, 2000);
+        outcome.version = plain(&outcome.version, 60);
+        let is_digest = |text: &str| text.parse::<Digest>().is_ok();
+        ensure(outcome.grader.is_empty() || is_digest(&outcome.grader), Problem::invalid("grader is a digest"))?;
+        let mut transaction = self.app.0.database.first().read().await?;
+        let mut names = std::collections::BTreeSet::new();
+        for file in &mut outcome.files {
+            // A report's name and media type are not the worker's to choose.
+            let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
+                return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
+            };
+            ensure(names.insert(file.name.clone()), Problem::invalid("two reports have the same name"))?;
+            file.media_type = (*media_type).to_owned();
+            let statement = "SELECT size FROM job_file WHERE job = ? AND attempt = ? AND digest = ?";
+            let stored =
+                transaction.row(statement, values![lease.job, lease.attempt, file.artifact.digest.as_str()]).await?;
+            let Some(stored) = stored else {
+                return Err(Problem::conflict("a report was not stored for this job", "store it first"));
+            };
+            file.artifact.size = u64::try_from(stored.int("size")?).unwrap_or(0);
+        }
+        Ok(outcome)
+    }
+
+    /// Returns the task of a job that the worker holds right now.
+    async fn held(&self, lease: &Lease) -> Result<Task, Problem> {
+        let mut transaction = self.app.0.database.first().read().await?;
+        let statement = "SELECT payload FROM job
+            WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
+        let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key, self.token]).await?;
+        let row = row.ok_or_else(|| Problem::not_found("job of yours"))?;
+        serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
+    }
+
+    /// Returns an artifact of a job that it holds.
+    ///
+    /// # Errors
+    /// When the job is not its own (any more), or the artifact is not the job's.
+    pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtifact, Problem> {
+        let task = self.held(lease).await?;
+        let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
+        ensure(task.submission.artifact.digest == *digest || suite, Problem::not_found("artifact of this job"))?;
+        Ok(self.app.0.store.open(digest).await?)
+    }
+
+    /// Stores a report of a job that it holds.
+    ///
+    /// # Errors
+    /// When the job is not its own (any more), or the store fails.
+    pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
+        self.held(lease).await?;
+        let artifact = self.app.0.store.put_file(file).await?;
+        let mut transaction = self.app.0.database.first().begin().await?;
+        // A request that takes the job away meanwhile waits for this one, or this one finds the job taken.
+        let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
+            {for update}";
+        let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
+        ensure(held.is_some(), Problem::not_found("job of yours"))?;
+        let size = i64::try_from(artifact.size).unwrap_or(i64::MAX);
+        let statement = "INSERT INTO job_file (job, attempt, digest, size) VALUES (?, ?, ?, ?)
+            ON CONFLICT (job, attempt, digest) DO NOTHING";
+        transaction.execute(statement, values![lease.job, lease.attempt, artifact.digest.as_str(), size]).await?;
+        transaction.commit().await?;
+        Ok(artifact)
+    }
+
+    /// Returns whether it holds the job: before anything is received for it.
+    ///
+    /// # Errors
+    /// When it does not.
+    pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
+        self.held(lease).await.map(|_| MAX_FILE)
+    }
+}
+
+/// More points than any suite has, and slots than any machine.
+const MOST_POINTS: f64 = 1e9;
+const MANY_SLOTS: usize = 256;
+
+/// Returns words of a stranger: one line, not too long, without orders to terminals.
+fn plain(text: &str, most: usize) -> String {
+    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
+}

@@ -1,0 +1,120 @@
+//! The asker of a request, told from the secrets that it shows.
+use crate::domain::{
+    Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
+    accounts::identity::{self, SessionState},
+    view::Account,
+};
+use crate::{
+    db::read_row,
+    problem::{Problem, ensure},
+    values,
+};
+use std::time::Instant;
+
+impl App {
+    /// Returns the owner of these secrets.
+    async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<SessionState>), Problem> {
+        let (account, seen) = match secrets {
+            Secrets { bearer: Some(token), .. } => {
+                let mut transaction = self.0.database.read().await?;
+                (identity::account_of_token(&mut transaction, token).await?.0, None)
+            }
+            Secrets { session: Some(session), .. } => {
+                let mut transaction = self.0.database.read().await?;
+                let found = identity::account_of_session(&mut transaction, session).await?;
+                drop(transaction);
+                let (account, seen) = found.ok_or_else(|| Problem::unknown_secret("session", "sign in again"))?;
+                if seen.is_stale {
+                    let mut transaction = self.0.database.begin().await?;
+                    identity::session_seen(&mut transaction, session).await?;
+                    transaction.commit().await?;
+                }
+                (account, Some(seen))
+            }
+            _ => return Err(Problem::not_signed_in()),
+        };
+        if !self.0.throttle.pass(account.id, self.requests_per_minute, Instant::now()) {
+            let most = self.requests_per_minute;
+            return Err(Problem::too_many(format!("an account may send {most} requests in a minute")));
+        }
+        Ok((account, seen))
+    }
+
+    /// Returns a visitor, who may be anybody.
+    pub fn visitor(&self, secrets: Secrets) -> Visitor {
+        Visitor { app: self.clone(), secrets }
+    }
+
+    /// Returns the person who is signed in.
+    ///
+    /// # Errors
+    /// When nobody is, or they ask too often.
+    pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
+        let (account, session) = self.account(secrets).await?;
+        Ok(Person { account, session, address: secrets.address, app: self.clone() })
+    }
+
+    /// Returns a worker by its token; what it is called is its own to say.
+    ///
+    /// # Errors
+    /// When the token is none of a worker's, or not any more.
+    pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
+        let mut transaction = self.0.database.read().await?;
+        let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
+        let row = transaction.row(statement, values![identity::digest(token)]).await?;
+        let Some(row) = row else {
+            return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new one"));
+        };
+        Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
+    }
+}
+
+impl Person {
+    /// Returns whether their session lasts longer from now on: the browser is to keep its cookie as long.
+    pub fn is_renewed(&self) -> bool {
+        self.session.as_ref().is_some_and(|session| session.is_stale)
+    }
+
+    /// Returns the person as a member of a course.
+    ///
+    /// # Errors
+    /// When they are not in it, or there is no such course: who is not of it does not learn that it exists.
+    pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT course.id, course.slug, course.title, member.role FROM course
+            LEFT JOIN member ON member.course = course.id AND member.account = ?
+            WHERE course.slug = ?";
+        let row = transaction.row(statement, values![self.account.id, slug]).await?;
+        let Some(row) = row else { return Err(Problem::not_found("course")) };
+        let role = row.maybe_text("role")?;
+        ensure(role.is_some() || self.account.is_admin, Problem::not_found("course"))?;
+        let row = &row;
+        Ok(read_row!(row => Member {
+            course = "id", slug, title;
+            is_staff: self.account.is_admin || role.as_deref() == Some("staff"),
+            account: self.account,
+            app: self.app,
+        }))
+    }
+
+    /// Returns the person as an administrator.
+    ///
+    /// # Errors
+    /// When they are none.
+    pub fn admin(self) -> Result<Admin, Problem> {
+        match self.account.is_admin {
+            true => Ok(Admin { account: self.account, app: self.app }),
+            false => Err(Problem::not_allowed("this is for administrators")),
+        }
+    }
+}
+
+impl Member {
+    /// Returns the person as one of the course's staff.
+    ///
+    /// # Errors
+    /// When they are not.
+    pub fn staff(self) -> Result<Staff, Problem> {
+        if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("this is for the course's staff")) }
+    }
+}

@@ -1,0 +1,232 @@
+//! The staff of a course.
+use crate::domain::{
+    Member, Settings,
+    accounts::identity,
+    view::{self, Assignment, Event, Queue, Submission},
+};
+use crate::{
+    db::{DbError, FromRow, Transaction},
+    lti::score,
+    problem::{Problem, ensure},
+    values,
+};
+use std::{ops::Deref, path::Path};
+
+/// Somebody of a course's staff.
+pub struct Staff(pub(in crate::domain) Member);
+
+/// A change of an assignment; parts that are not named stay as they are.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct AssignmentChange<'a> {
+    /// The assignment's title.
+    pub title: Option<&'a str>,
+    /// Whether students see it.
+    pub visible: Option<bool>,
+    /// The revision that the change is of: it is refused when there is a later one.
+    pub revision: Option<i64>,
+    /// The digest of a suite that was just uploaded, and whether it hides groups.
+    pub suite: Option<(&'a str, bool)>,
+}
+
+/// Refuses a change of what somebody else changed meanwhile, and says who, and what.
+async fn check_revision(
+    transaction: &mut Transaction,
+    assignment: &Assignment,
+    revision: Option<i64>,
+) -> Result<(), Problem> {
+    if revision.is_none_or(|revision| revision == assignment.revision) {
+        return Ok(());
+    }
+    let statement = "SELECT account.login, event.text FROM event LEFT JOIN account ON account.id = event.actor
+        WHERE event.assignment = ? AND event.kind IN ('assignment', 'regrade') ORDER BY event.id DESC LIMIT 1";
+    let last = transaction.row(statement, values![assignment.id]).await?;
+    let last = last.map(|row| Ok::<_, DbError>((row.maybe_text("login")?.unwrap_or_default(), row.text("text")?)));
+    let (who, what) = last.transpose()?.unwrap_or_default();
+    Err(Problem::conflict(format!("{who} changed it meanwhile: {what}"), "load the page again, and change it there"))
+}
+
+impl Deref for Staff {
+    type Target = Member;
+
+    fn deref(&self) -> &Member {
+        &self.0
+    }
+}
+
+impl Staff {
+    /// Writes into the course's audit log.
+    pub(in crate::domain) async fn note(
+        &self,
+        transaction: &mut Transaction,
+        kind: &'static str,
+        assignment: Option<i64>,
+        text: &str,
+    ) -> Result<(), DbError> {
+        view::note(transaction, &self.entry(kind, assignment, text)).await
+    }
+
+    /// Makes an assignment, or changes it. Groups that another suite may hide were not meant when those of the last one
+    /// were published: they are withheld.
+    ///
+    /// # Errors
+    /// When something in it makes no sense, or somebody changed it since `revision`.
+    pub async fn set_assignment(
+        &self,
+        slug: &str,
+        change: AssignmentChange<'_>,
+        settings: impl FnOnce(&Settings) -> Result<Settings, Problem>,
+    ) -> Result<Assignment, Problem> {
+        identity::check_slug("an assignment's name", slug)?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
+            WHERE course = ? AND slug = ? {for update}";
+        let before: Option<Assignment> = transaction.find(statement, values![self.course, slug]).await?;
+        if let Some(before) = &before {
+            check_revision(&mut transaction, before, change.revision).await?;
+        }
+        let title = change.title.or(before.as_ref().map(|before| before.title.as_str())).unwrap_or(slug);
+        identity::check_title("a title", title)?;
+        let was_published = before.as_ref().is_some_and(|before| before.published_at.is_some());
+        let visible = change.visible.or(before.as_ref().map(|before| before.visible)).unwrap_or_default();
+        let before = before.as_ref().map(|before| before.settings.clone()).unwrap_or_default();
+        let settings = settings(&before)?.checked(&self.app.suites)?;
+        if let Some((digest, _)) = change.suite {
+            let statement = "INSERT INTO suite (course, digest) VALUES (?, ?) ON CONFLICT (course, digest) DO NOTHING";
+            transaction.execute(statement, values![self.course, digest]).await?;
+        }
+        self.check_suite(&mut transaction, &settings).await?;
+        let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
+            VALUES (?, ?, ?, ?, ?, {now})
+            ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
+               settings = excluded.settings, revision = assignment.revision + 1,
+               published_at = CASE WHEN ? = 0 THEN assignment.published_at END
+            RETURNING id, slug, title, visible, settings, published_at, revision";
+        let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
+        // Another suite is known to hide groups or not to, or may.
+        let hides = change.suite.is_none_or(|(_, hides)| hides);
+        let withholds = was_published && hides && !is_same_suite;
+        let values = values![self.course, slug, title, visible, settings.text(), withholds];
+        let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
+        // Late submissions may be worth something else now, and platforms hear of what is shown.
+        if withholds || before.late_policy() != settings.late_policy() {
+            score::send_all(&mut transaction, assignment.id, false).await?;
+        }
+        let mut text = format!("{slug} ({title}), {}", if visible { "visible" } else { "hidden" });
+        let changes = settings.changes(&before);
+        if !changes.is_empty() {
+            text = format!("{text}: {changes}");
+        }
+        if withholds {
+            text.push_str("; hidden groups are withheld");
+        }
+        self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
+        transaction.commit().await?;
+        if withholds {
+            self.app.0.notifier.wake();
+        }
+        Ok(assignment)
+    }
+
+    /// Checks that an archive that settings name is a suite of this course: a digest opens nothing.
+    pub(in crate::domain) async fn check_suite(
+        &self,
+        transaction: &mut Transaction,
+        settings: &Settings,
+    ) -> Result<(), Problem> {
+        let Some(digest) = &settings.suite_archive else { return Ok(()) };
+        let statement = "SELECT digest FROM suite WHERE course = ? AND digest = ?";
+        let known = transaction.row(statement, values![self.course, digest]).await?.is_some();
+        let kept = match digest.parse() {
+            Ok(digest) if known => self.app.0.store.has(&digest).await?,
+            _ => false,
+        };
+        ensure(
+            kept,
+            Problem::conflict("suite_archive: no suite of this digest was uploaded to this course", "upload it"),
+        )
+    }
+
+    /// Shows students what the suite hides, or withholds it again; platforms are told what is shown.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn publish(&self, slug: &str, published: bool) -> Result<Assignment, Problem> {
+        let mut transaction = self.begin().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let statement =
+            "UPDATE assignment SET published_at = CASE WHEN ? = 1 THEN {now} END, revision = revision + 1 WHERE id = ?
+            RETURNING id, slug, title, visible, settings, published_at, revision";
+        let row = transaction.one(statement, values![published, assignment.id]).await?;
+        let text = format!("hidden groups of {slug} are {}", if published { "published" } else { "withheld" });
+        self.note(&mut transaction, "assignment", Some(assignment.id), &text).await?;
+        score::send_all(&mut transaction, assignment.id, false).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        Ok(Assignment::from_row(&row)?)
+    }
+
+    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
+    ///
+    /// # Errors
+    /// When there is no such assignment, somebody changed it since `revision`, or the store fails.
+    pub async fn set_suite(
+        &self,
+        slug: &str,
+        archive: &Path,
+        hides: bool,
+        revision: Option<i64>,
+    ) -> Result<Assignment, Problem> {
+        self.assignment(slug).await?;
+        let digest = self.app.0.store.put_file(archive).await?.digest.to_string();
+        let change = AssignmentChange { revision, suite: Some((&digest, hides)), ..AssignmentChange::default() };
+        let settings = |before: &Settings| Ok(Settings { suite_archive: Some(digest.clone()), ..before.clone() });
+        self.set_assignment(slug, change, settings).await
+    }
+
+    /// Returns whether something that was handed in to an assignment was graded by a suite that hides groups.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn hides(&self, assignment: &Assignment) -> Result<bool, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        // Of what older versions graded nobody may have looked yet.
+        let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
+            WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
+            LIMIT 1";
+        Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
+    }
+
+    /// Submissions to an assignment of the course behind the one of this number, oldest first: a page of them, none
+    /// behind the last.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn submissions_after(&self, assignment: i64, after: i64) -> Result<Vec<Submission>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(view::submissions_after(&mut transaction, assignment, after).await?)
+    }
+
+    /// Returns the events of the course before the one of this number, latest first; with `None` up to now.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
+            LEFT JOIN account ON account.id = event.actor
+            WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200";
+        Ok(transaction.all(statement, values![self.course, before.unwrap_or(i64::MAX)]).await?)
+    }
+
+    /// Returns the queue and the workers.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn queue(&self) -> Result<Queue, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(view::queue(&mut transaction, &self.app).await?)
+    }
+
+    pub(in crate::domain) async fn begin(&self) -> Result<Transaction, Problem> {
+        Ok(self.app.0.database.begin().await?)
+    }
+}

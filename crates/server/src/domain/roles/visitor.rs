@@ -1,0 +1,119 @@
+//! Anybody.
+use crate::domain::{
+    App, NewSecret,
+    accounts::identity::{self, Way},
+    accounts::throttle,
+};
+use crate::problem::{Problem, ensure};
+use std::{net::IpAddr, time::Instant};
+
+/// The secrets that a request shows of its asker.
+#[derive(Clone, Default)]
+pub struct Secrets {
+    /// A token.
+    pub bearer: Option<String>,
+    /// The secret of a browser's session.
+    pub session: Option<String>,
+    /// The word of a browser that comes from a learning platform.
+    pub browser: Option<String>,
+    /// Where the request comes from.
+    pub address: Option<IpAddr>,
+}
+
+/// Somebody who need not be signed in.
+pub struct Visitor {
+    pub(crate) app: App,
+    pub(in crate::domain) secrets: Secrets,
+}
+
+/// Sign-ins by link or token from one address in a minute: a lecture hall may be one.
+const SIGN_INS: u32 = 600;
+
+impl Visitor {
+    fn count_sign_in(&self) -> Result<(), Problem> {
+        let bucket = throttle::bucket(self.secrets.address, "sign-in");
+        let passes = self.app.0.throttle.pass(bucket, SIGN_INS, Instant::now());
+        ensure(passes, Problem::too_many("too many people sign in from your address at this moment"))
+    }
+
+    /// Signs in by a link, which is used up.
+    ///
+    /// # Errors
+    /// When it is unknown, used or too old.
+    pub async fn sign_in_by_link(&self, link: &str) -> Result<NewSecret, Problem> {
+        self.count_sign_in()?;
+        let unknown = || Problem::unknown_secret("link", "ask the course's staff for a new one");
+        // Only who has a link keeps others from writing.
+        ensure(self.is_link(link).await?, unknown())?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let (account, way) = identity::use_link(&mut transaction, link).await?.ok_or_else(unknown)?;
+        let session = identity::begin_session(&mut transaction, account, way).await?;
+        transaction.commit().await?;
+        Ok(session)
+    }
+
+    /// Returns whether a link would sign somebody in.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn is_link(&self, link: &str) -> Result<bool, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(identity::is_link(&mut transaction, link).await?)
+    }
+
+    /// Signs in by a token of a person, until it is revoked.
+    ///
+    /// # Errors
+    /// When it is unknown or revoked.
+    pub async fn sign_in_by_token(&self, token: &str) -> Result<NewSecret, Problem> {
+        self.count_sign_in()?;
+        let mut transaction = self.app.0.database.read().await?;
+        let (account, token) = identity::account_of_token(&mut transaction, token).await?;
+        drop(transaction);
+        let mut transaction = self.app.0.database.begin().await?;
+        let session = identity::begin_session(&mut transaction, account.id, Way::Token(token)).await?;
+        transaction.commit().await?;
+        Ok(session)
+    }
+
+    /// Ends the session that the request shows.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn sign_out(&self) -> Result<(), Problem> {
+        if let Some(session) = &self.secrets.session {
+            let mut transaction = self.app.0.database.read().await?;
+            if identity::account_of_session(&mut transaction, session).await?.is_none() {
+                return Ok(());
+            }
+            drop(transaction);
+            let mut transaction = self.app.0.database.begin().await?;
+            identity::end_session(&mut transaction, session).await?;
+            transaction.commit().await?;
+        }
+        Ok(())
+    }
+
+    /// Checks that requests can be served.
+    ///
+    /// # Errors
+    /// When they can't.
+    pub async fn ready(&self) -> Result<(), Problem> {
+        self.app.0.storage.prove().await
+    }
+
+    /// Returns numbers for a monitor, in Prometheus' text format. Without a database that answers they are those of the
+    /// process.
+    ///
+    /// # Errors
+    /// When they can't be written as text.
+    pub async fn metrics(&self) -> Result<String, Problem> {
+        let parts = &self.app.0;
+        let queue = parts.counts.read(&parts.database, &parts.policy).await;
+        let queue = queue.inspect_err(|error| tracing::warn!(%error, "the queue can't be counted")).ok();
+        parts.instruments.show(&parts.storage, queue.as_ref()).map_err(|error| {
+            tracing::error!(%error, "the metrics can't be written");
+            Problem::fault()
+        })
+    }
+}

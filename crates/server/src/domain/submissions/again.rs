@@ -1,0 +1,73 @@
+//! Grading once more what the grader failed on.
+use crate::domain::{
+    Staff,
+    submissions::bulk::enqueue_replaced,
+    view::{self, Entry},
+};
+use crate::{
+    problem::{Problem, ensure},
+    values,
+};
+use serde::Serialize;
+use utoipa::ToSchema;
+
+/// The submissions that are graded again.
+#[derive(Serialize, ToSchema)]
+pub struct RegradeOrder {
+    /// How many submissions.
+    pub jobs: i64,
+}
+
+impl Staff {
+    /// Grades a submission once more, by the assignment's settings as they are.
+    ///
+    /// # Errors
+    /// When there is none of this number, it is being graded, or its bytes are not kept any longer.
+    pub async fn grade_again(&self, id: i64) -> Result<RegradeOrder, Problem> {
+        let submission = self.submission(id).await?;
+        let assignment = self.assignment(&submission.assignment).await?;
+        ensure(submission.removed_at.is_none(), Problem::removed())?;
+        let mut transaction = self.begin().await?;
+        transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
+        let statement = "UPDATE job SET replaced = 1 WHERE submission = ? AND campaign IS NULL AND replaced = 0
+            AND state IN ('done', 'buried', 'cancelled')";
+        let replaced = transaction.execute(statement, values![id]).await?;
+        ensure(replaced > 0, Problem::conflict("it is being graded", "wait for its grade"))?;
+        let jobs = enqueue_replaced(&mut transaction, &assignment, self.account.id, id..=id).await?;
+        let entry = self.entry("graded again", Some(assignment.id), "one submission");
+        view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        Ok(RegradeOrder { jobs })
+    }
+
+    /// Grades all submissions of an assignment, or of all assignments of the course, on which the grader failed once
+    /// more; how many these are.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<RegradeOrder, Problem> {
+        let assignments = match assignment {
+            Some(slug) => vec![self.assignment(slug).await?],
+            None => self.assignments().await?,
+        };
+        let mut jobs = 0;
+        for assignment in assignments {
+            let mut transaction = self.begin().await?;
+            transaction.row("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
+            let statement = "UPDATE job SET replaced = 1 WHERE campaign IS NULL AND replaced = 0 AND state = 'buried'
+                AND submission IN (SELECT submission.id FROM submission
+                    JOIN grade ON grade.submission = submission.id
+                    JOIN result ON result.id = grade.result AND result.code = 'JE'
+                    WHERE submission.assignment = ? AND submission.removed_at IS NULL)";
+            transaction.execute(statement, values![assignment.id]).await?;
+            let found = enqueue_replaced(&mut transaction, &assignment, self.account.id, 0..=i64::MAX).await?;
+            if found > 0 {
+                let text = format!("{found} submissions on which the grader failed");
+                self.note(&mut transaction, "graded again", Some(assignment.id), &text).await?;
+            }
+            self.app.0.notifier.commit(transaction).await?;
+            jobs += found;
+        }
+        Ok(RegradeOrder { jobs })
+    }
+}

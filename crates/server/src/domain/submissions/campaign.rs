@@ -1,0 +1,80 @@
+//! The work of regrades: one statement does it for all submissions, so that each step is taken at once or not at all.
+use crate::domain::{
+    submissions::bulk::{payload, pieces},
+    view::Assignment,
+};
+use crate::{
+    db::{DbError, Transaction, Value},
+    lti::score,
+    problem::Problem,
+    queue::Turn,
+    task::JUDGE_ERROR,
+    values,
+};
+
+/// Enqueues the submissions to an assignment, with a regrade's settings, that the regrade does not know yet; how many
+/// these are.
+pub(in crate::domain) async fn enqueue_missing(
+    transaction: &mut Transaction,
+    campaign: i64,
+    assignment: &Assignment,
+) -> Result<u64, Problem> {
+    // None of them is removed before this transaction ends.
+    let statement = "SELECT count(*) AS n FROM
+        (SELECT id FROM submission WHERE assignment = ? ORDER BY id {for update}) AS held";
+    transaction.one(statement, values![assignment.id]).await?;
+    let turn = Turn::Campaign(campaign);
+    let from = turn.next(transaction).await?;
+    let mut values: Vec<Value> = vec![campaign.into(), turn.key().into()];
+    values.extend(pieces(assignment)?.into_iter().map(Value::from));
+    values.extend([from, turn.spacing_millis(), assignment.id, campaign].map(Value::from));
+    // The plus keeps SQLite from looking through all jobs of the regrade for each submission.
+    let statement = concat!(
+        "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
+         SELECT 'grading', submission.id, CAST(? AS {int}), CAST(? AS TEXT), ",
+        payload!(),
+        ", 'waiting', ? + ? * (row_number() OVER (ORDER BY submission.id) - 1), {now}, {now}
+         FROM submission WHERE submission.assignment = ? AND submission.removed_at IS NULL
+            AND NOT EXISTS (SELECT 1 FROM job WHERE job.submission = submission.id AND +job.campaign = ?)"
+    );
+    Ok(transaction.execute(statement, &values).await?)
+}
+
+/// Makes a regrade's results count, by the word of somebody, for a reason that students read. Where the grader failed,
+/// the old grade stays.
+pub(in crate::domain) async fn apply(
+    transaction: &mut Transaction,
+    campaign: i64,
+    (by, course, assignment): (i64, i64, i64),
+    reason: &str,
+) -> Result<(), DbError> {
+    let statement =
+        "INSERT INTO grade_change (submission, old_result, new_result, changed_by, campaign, reason, changed_at)
+        SELECT result.submission, grade.result, result.id, CAST(? AS {int}), CAST(? AS {int}), CAST(? AS TEXT), {now}
+        FROM result LEFT JOIN grade ON grade.submission = result.submission
+        WHERE result.campaign = ? AND result.code <> ?";
+    transaction.execute(statement, values![by, campaign, reason, campaign, JUDGE_ERROR]).await?;
+    let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
+        SELECT {now}, 'grade changed', CAST(? AS {int}), CAST(? AS {int}), CAST(? AS {int}), result.submission,
+           CAST(? AS TEXT)
+        FROM result LEFT JOIN grade ON grade.submission = result.submission
+        LEFT JOIN result AS old ON old.id = grade.result
+        WHERE result.campaign = ? AND result.code <> ?
+           AND (old.id IS NULL OR old.code <> result.code
+               OR coalesce(old.points, '') <> coalesce(result.points, ''))";
+    transaction.execute(statement, values![by, course, assignment, reason, campaign, JUDGE_ERROR]).await?;
+    let statement = "INSERT INTO grade (submission, result, set_at)
+        SELECT submission, id, {now} FROM result WHERE campaign = ? AND code <> ? ORDER BY submission
+        ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
+    transaction.execute(statement, values![campaign, JUDGE_ERROR]).await?;
+    score::changed_by(transaction, campaign).await
+}
+
+/// Takes what is left of a regrade out of the queue.
+pub(in crate::domain) async fn cancel(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+    let statement = "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
+           ORDER BY id {for update})
+        UPDATE job SET state = 'cancelled', finished_at = {now}, lease_key = NULL, lease_until = NULL
+        WHERE id IN (SELECT id FROM left_over)";
+    transaction.execute(statement, values![campaign]).await.map(drop)
+}

@@ -1,0 +1,274 @@
+//! Decisions of staff about a student's work: other points, a comment, more time; and requests of students.
+use crate::domain::{
+    Member, Staff,
+    accounts::identity,
+    view::{self, Assignment, Entry, Submission},
+};
+use crate::{
+    calendar,
+    db::{DbError, Row, Transaction, from_row},
+    lti::score,
+    problem::{Problem, ensure},
+    values,
+};
+
+/// How long a comment or a request may be.
+const LONGEST: usize = 2000;
+
+/// A student's work on an assignment.
+#[derive(Debug, Clone)]
+pub struct StudentHistory {
+    /// The name of their account.
+    pub login: String,
+    /// The student's name.
+    pub name: String,
+    /// All that they handed in, newest first.
+    pub submissions: Vec<Submission>,
+    /// Until when they may hand in, where that is another moment than for the others.
+    pub extended_to: Option<i64>,
+}
+
+/// A request of a student's that nobody has answered.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// The submission.
+    pub submission: i64,
+    /// The owner's login.
+    pub login: String,
+    /// The question.
+    pub text: String,
+}
+
+/// How an assignment stands, for the table of its course.
+#[derive(Debug, Clone)]
+pub struct Overview {
+    /// Students who handed something in.
+    pub students: i64,
+    /// The number of their submissions.
+    pub submissions: i64,
+    /// Requests of students that nobody has answered.
+    pub requests: i64,
+}
+
+from_row! { Overview { students, submissions, requests } }
+from_row! { Request { submission, login, text = "request" } }
+
+fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
+    let length = text.chars().count();
+    let is_hidden = |c| identity::is_control(c) && !matches!(c, '\n' | '\r' | '\t');
+    if let Some(hidden) = text.chars().find(|c| is_hidden(*c)) {
+        return Err(Problem::invalid(format!(
+            "{what} must not hold the invisible character {}",
+            hidden.escape_unicode()
+        )));
+    }
+    let is_fit = (least..=LONGEST).contains(&length);
+    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {LONGEST} characters")))
+}
+
+impl Staff {
+    /// Gives a submission other points than the grader, or the grader's again, and says why. That answers a request.
+    ///
+    /// # Errors
+    /// When there is no such submission, these are no points, or somebody marked it since the mark of the moment that
+    /// was `seen`.
+    pub async fn mark(
+        &self,
+        id: i64,
+        points: Option<&str>,
+        comment: &str,
+        seen: Option<Option<i64>>,
+    ) -> Result<Submission, Problem> {
+        check_words("a comment", comment, 0)?;
+        if points.is_some() && comment.is_empty() {
+            return Err(Problem::conflict("other points need a reason", "say it in the comment"));
+        }
+        let is_number = |text: &str| {
+            text.len() <= 30
+                && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
+                && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
+        };
+        if points.is_some_and(|points| !is_number(points)) {
+            return Err(Problem::invalid("points are a number between 0 and a million, such as 7.5"));
+        }
+        let mut transaction = self.begin().await?;
+        transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        let marked_at = submission.mark.as_ref().and_then(|mark| mark.marked_at);
+        if let Some(mark) = submission.mark.as_ref().filter(|_| seen.is_some_and(|seen| seen != marked_at)) {
+            let who = mark.by.as_deref().unwrap_or("somebody");
+            let detail = format!("{who} marked it meanwhile: {}", mark.comment);
+            return Err(Problem::conflict(detail, "load the page again, and mark it there"));
+        }
+        if points.is_some() && submission.grade.is_none() {
+            return Err(Problem::conflict("it is not graded yet", "wait for its grade"));
+        }
+        let before = submission.mark.and_then(|mark| mark.points);
+        if before.as_deref() != points {
+            let what = if points.is_some() { "points by hand" } else { "the grader's points again" };
+            let reason = if comment.is_empty() { what.to_owned() } else { format!("{what}: {comment}") };
+            let statement =
+                "INSERT INTO grade_change (submission, old_result, new_result, changed_by, reason, given, changed_at)
+                SELECT submission, result, result, CAST(? AS {int}), CAST(? AS TEXT), CAST(? AS TEXT), {now}
+                FROM grade WHERE submission = ?";
+            transaction.execute(statement, values![self.account.id, reason, points, id]).await?;
+        }
+        let statement =
+            "INSERT INTO mark (submission, points, comment, marked_by, marked_at) VALUES (?, ?, ?, ?, {now})
+            ON CONFLICT (submission) DO UPDATE SET points = excluded.points, comment = excluded.comment,
+               marked_by = excluded.marked_by, marked_at = excluded.marked_at";
+        transaction.execute(statement, values![id, points, comment, self.account.id]).await?;
+        let text = match points {
+            Some(points) => format!("{points} points: {comment}"),
+            None => format!("the grader's points: {comment}"),
+        };
+        let entry = self.entry("marked", None, &text);
+        view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
+        score::changed(&mut transaction, id).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        self.submission(id).await
+    }
+
+    /// Returns the requests of students about an assignment that nobody has answered, oldest first.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
+        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let statement = "SELECT mark.submission, mark.request, account.login FROM mark
+            JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
+            WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
+            ORDER BY mark.requested_at";
+        Ok(transaction.all(statement, values![assignment.id]).await?)
+    }
+
+    /// Returns all that a student handed in to an assignment.
+    ///
+    /// # Errors
+    /// When they are no member and handed nothing in.
+    pub async fn student_history(&self, slug: &str, login: &str) -> Result<StudentHistory, Problem> {
+        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let account = self.student(&mut transaction, &assignment, login).await?;
+        Ok(StudentHistory {
+            login: login.to_owned(),
+            name: account.text("name")?,
+            submissions: view::submissions_of(&mut transaction, assignment.id, account.int("id")?).await?,
+            extended_to: extension(&mut transaction, assignment.id, account.int("id")?).await?,
+        })
+    }
+
+    async fn student(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        login: &str,
+    ) -> Result<Row, Problem> {
+        let statement = "SELECT id, name FROM account WHERE login = ?
+            AND (EXISTS (SELECT 1 FROM member WHERE member.account = account.id AND member.course = ?)
+                OR EXISTS (SELECT 1 FROM submission
+                    WHERE submission.account = account.id AND submission.assignment = ?))";
+        let row = transaction.row(statement, values![login, self.course, assignment.id]).await?;
+        row.ok_or_else(|| Problem::not_found("member"))
+    }
+
+    /// Lets a student hand in until another moment than the others, or until the same again.
+    ///
+    /// # Errors
+    /// When there is no such student, or somebody changed it since the event that was `seen`.
+    pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
+        identity::check_slug("a login", login)?;
+        if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
+            return Err(Problem::invalid(
+                "due_at is milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00",
+            ));
+        }
+        let mut transaction = self.begin().await?;
+        let assignment = self.find_assignment(&mut transaction, slug).await?;
+        let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
+        let beginning = format!("{login} hands in ");
+        self.check_seen(&mut transaction, ("extension", Some(assignment.id)), &beginning, seen).await?;
+        let statement = "DELETE FROM extension WHERE assignment = ? AND account = ?";
+        transaction.execute(statement, values![assignment.id, account]).await?;
+        if let Some(due) = due_at {
+            let statement =
+                "INSERT INTO extension (assignment, account, due_at, set_by, set_at) VALUES (?, ?, ?, ?, {now})";
+            transaction.execute(statement, values![assignment.id, account, due, self.account.id]).await?;
+        }
+        let statement = "SELECT max(id) AS id FROM submission WHERE assignment = ? AND account = ?";
+        if let Some(last) = transaction.one(statement, values![assignment.id, account]).await?.maybe_int("id")? {
+            score::changed(&mut transaction, last).await?;
+        }
+        let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
+        let text = format!("{login} hands in {until}");
+        self.note(&mut transaction, "extension", Some(assignment.id), &text).await?;
+        Ok(self.app.0.notifier.commit(transaction).await?)
+    }
+}
+
+impl Member {
+    /// Asks staff to look at one's own submission again.
+    ///
+    /// # Errors
+    /// When it is not one's own, or nothing is asked.
+    pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
+        check_words("a request", text, 1)?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let submission = self.find_submission(&mut transaction, id).await?;
+        if submission.account != self.account.id {
+            return Err(Problem::not_allowed("this is for the person who handed it in"));
+        }
+        let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
+        if before.chars().count() + text.chars().count() > 5 * LONGEST {
+            return Err(Problem::conflict("all that you asked is too long by now", "speak with the course's staff"));
+        }
+        let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
+        let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
+            ON CONFLICT (submission) DO UPDATE SET request = coalesce(mark.request, '') || excluded.request,
+               requested_at = excluded.requested_at";
+        transaction.execute(statement, values![id, text]).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// Returns how an assignment stands, for staff.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn overview(&self, assignment: &Assignment) -> Result<Option<Overview>, Problem> {
+        if !self.is_staff {
+            return Ok(None);
+        }
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT count(DISTINCT submission.account) AS students, count(*) AS submissions,
+            (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
+                WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests
+            FROM submission WHERE submission.assignment = ?";
+        Ok(transaction.find(statement, values![assignment.id, assignment.id]).await?)
+    }
+
+    /// Returns the time until which this member may hand in.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn due(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(due(&mut transaction, assignment, self.account.id).await?)
+    }
+}
+
+async fn extension(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<i64>, DbError> {
+    let statement = "SELECT due_at FROM extension WHERE assignment = ? AND account = ?";
+    let row = transaction.row(statement, values![assignment, account]).await?;
+    row.map(|row| row.int("due_at")).transpose()
+}
+
+/// Returns the time until which an account may hand in: an extension gives more time, and never less.
+pub(in crate::domain) async fn due(
+    transaction: &mut Transaction,
+    assignment: &Assignment,
+    account: i64,
+) -> Result<Option<i64>, DbError> {
+    match assignment.settings.due_at {
+        None => Ok(None),
+        Some(due) => Ok(extension(transaction, assignment.id, account).await?.max(Some(due))),
+    }
+}

@@ -1,0 +1,323 @@
+//! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them.
+//! Until then no grade changes.
+use crate::domain::{Settings, Staff, submissions::campaign, view::Assignment};
+use crate::{
+    db::{DbError, FromRow, Row, Transaction, read_row},
+    problem::{Problem, ensure},
+    task::{JUDGE_ERROR, Task},
+    values,
+};
+use serde::{Deserialize, Serialize};
+use utoipa::ToSchema;
+
+/// Changes that are told at one time, at most.
+const CHANGES: i64 = 1000;
+
+/// Where a regrade is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum RegradeState {
+    /// Nobody has decided yet.
+    Open,
+    /// The regrade's results count.
+    Applied,
+    /// The results never counted.
+    Discarded,
+}
+
+/// A regrade and what it would change.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Regrade {
+    /// The regrade's number.
+    pub id: i64,
+    /// Where it is.
+    pub state: RegradeState,
+    /// Why it is done, as students read it when it is applied.
+    pub reason: String,
+    /// The settings by which submissions are graded this time.
+    pub settings: Settings,
+    /// The one who began it.
+    pub by: String,
+    /// When, in milliseconds since 1970.
+    pub created_at: i64,
+    /// How many submissions it grades.
+    pub submissions: usize,
+    /// How many of them are still to be graded.
+    pub left: usize,
+    /// How many the grader failed on: their grades stay.
+    pub failed: usize,
+    /// How many grades change.
+    pub changed: usize,
+    /// The changes, by submission: as many as were asked for.
+    pub changes: Vec<Change>,
+    /// The submission after which there are more changes.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub next: Option<i64>,
+}
+
+/// A grade that changes, and why.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Change {
+    /// The submission.
+    pub submission: i64,
+    /// The owner's login.
+    pub login: String,
+    /// The verdict that counts now.
+    pub old_code: Option<String>,
+    /// The points that count now.
+    pub old_points: Option<String>,
+    /// The line about it.
+    pub old_summary: Option<String>,
+    /// The verdict of the regrade.
+    pub new_code: String,
+    /// The new points.
+    pub new_points: Option<String>,
+    /// The new result in one line.
+    pub new_summary: String,
+    /// The differences of the two gradings: version, suite, rules, limits.
+    pub why: Vec<String>,
+}
+
+/// Regrades without their changes; what follows says which.
+macro_rules! regrades {
+    ($which:literal) => {
+        concat!(
+            "SELECT campaign.id, campaign.state, campaign.reason, campaign.settings, campaign.created_at, account.login
+             FROM campaign JOIN account ON account.id = campaign.started_by WHERE ",
+            $which
+        )
+    };
+}
+
+impl Staff {
+    /// Begins a regrade of all submissions to an assignment by settings.
+    ///
+    /// # Errors
+    /// When another one is open.
+    pub async fn regrade(&self, slug: &str, reason: &str, settings: &Settings) -> Result<Regrade, Problem> {
+        crate::domain::accounts::identity::check_title("a reason", reason)?;
+        let assignment = self.assignment(slug).await?;
+        let settings = settings.checked(&self.app.suites)?;
+        let mut transaction = self.begin().await?;
+        self.check_suite(&mut transaction, &settings).await?;
+        transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
+        let statement = "SELECT id FROM campaign WHERE assignment = ? AND state = 'open'";
+        if transaction.row(statement, values![assignment.id]).await?.is_some() {
+            return Err(Problem::conflict("another regrade is open", "apply or discard it first"));
+        }
+        let statement = "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at)
+            VALUES (?, 'open', ?, ?, ?, {now}) RETURNING id";
+        let values = values![assignment.id, reason, settings.text(), self.account.id];
+        let campaign = transaction.one(statement, values).await?.int("id")?;
+        let of_regrade = Assignment { settings, ..assignment };
+        let count = campaign::enqueue_missing(&mut transaction, campaign, &of_regrade).await?;
+        let text = format!("regrade {campaign} of {count} submissions: {reason}");
+        self.note(&mut transaction, "regrade", Some(of_regrade.id), &text).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        self.show_regrade(slug, campaign, None).await
+    }
+
+    /// Returns the regrades of an assignment, latest first, without their changes.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn regrades(&self, slug: &str) -> Result<Vec<Regrade>, Problem> {
+        let (mut transaction, assignment) = self.read_at(slug).await?;
+        let statement = regrades!("campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100");
+        Ok(transaction.all(statement, values![assignment.id]).await?)
+    }
+
+    /// Returns a regrade and what it would change, or did, for submissions after one.
+    ///
+    /// # Errors
+    /// When there is none of this number.
+    pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
+        let (mut transaction, assignment) = self.read_at(slug).await?;
+        find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
+    }
+
+    /// Makes the results of a regrade count, and its settings about grading the assignment's. Where the grader failed,
+    /// the old grade stays.
+    ///
+    /// # Errors
+    /// When it is not finished; submissions that came in meanwhile are graded first, too.
+    pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
+        let assignment = self.assignment(slug).await?;
+        let mut transaction = self.begin().await?;
+        let (settings, reason) = self.lock_open(&mut transaction, &assignment, id).await?;
+        let of_regrade = Assignment { settings: settings.clone(), ..assignment };
+        let missing = campaign::enqueue_missing(&mut transaction, id, &of_regrade).await?;
+        if missing > 0 {
+            self.app.0.notifier.commit(transaction).await?;
+            return Err(Problem::conflict(
+                match missing {
+                    1 => "1 submission came in meanwhile, and is graded now".to_owned(),
+                    _ => format!("{missing} submissions came in meanwhile, and are graded now"),
+                },
+                "look at them, and apply then",
+            ));
+        }
+        let statement = "SELECT count(*) AS n FROM job WHERE campaign = ? AND state IN ('waiting', 'running')";
+        let waiting = transaction.one(statement, values![id]).await?.int("n")?;
+        ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
+        // From now on submissions are graded by these settings.
+        let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
+        let before = transaction.one(before, values![of_regrade.id]).await?.text("settings")?;
+        let settings = Settings::read(&before)?.graded_as(&settings).text();
+        let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
+        transaction.execute(statement, values![settings, of_regrade.id]).await?;
+        campaign::apply(&mut transaction, id, (self.account.id, self.course, of_regrade.id), &reason).await?;
+        self.decide(transaction, of_regrade.id, id, "applied").await?;
+        self.show_regrade(slug, id, None).await
+    }
+
+    /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes.
+    ///
+    /// # Errors
+    /// When there is none, or it was decided on.
+    pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
+        let assignment = self.assignment(slug).await?;
+        let mut transaction = self.begin().await?;
+        self.lock_open(&mut transaction, &assignment, id).await?;
+        campaign::cancel(&mut transaction, id).await?;
+        self.decide(transaction, assignment.id, id, "discarded").await?;
+        self.show_regrade(slug, id, None).await
+    }
+
+    /// Locks a regrade that nobody has decided on; its settings and its reason.
+    async fn lock_open(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        id: i64,
+    ) -> Result<(Settings, String), Problem> {
+        let statement = "SELECT state, settings, reason FROM campaign WHERE id = ? AND assignment = ? {for update}";
+        let row = transaction.row(statement, values![id, assignment.id]).await?;
+        let row = row.ok_or_else(|| Problem::not_found("regrade"))?;
+        match row.text("state")?.as_str() {
+            "open" => Ok((Settings::read(&row.text("settings")?)?, row.text("reason")?)),
+            state => Err(Problem::conflict(format!("this regrade is {state}"), "begin a new one")),
+        }
+    }
+
+    /// Writes what was decided on a regrade.
+    async fn decide(
+        &self,
+        mut transaction: Transaction,
+        assignment: i64,
+        id: i64,
+        state: &'static str,
+    ) -> Result<(), Problem> {
+        let statement = "UPDATE campaign SET state = ?, decided_by = ?, decided_at = {now} WHERE id = ?";
+        transaction.execute(statement, values![state, self.account.id, id]).await?;
+        self.note(&mut transaction, "regrade", Some(assignment), &format!("regrade {id} {state}")).await?;
+        Ok(self.app.0.notifier.commit(transaction).await?)
+    }
+}
+
+impl FromRow for Regrade {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
+        Ok(read_row!(row => Self {
+            id, reason, by = "login", created_at;
+            state: match row.text("state")?.as_str() {
+                "applied" => RegradeState::Applied,
+                "discarded" => RegradeState::Discarded,
+                _ => RegradeState::Open,
+            },
+            settings: Settings::read(&row.text("settings")?)?,
+            submissions: 0,
+            left: 0,
+            failed: 0,
+            changed: 0,
+            changes: Vec::new(),
+            next: None,
+        }))
+    }
+}
+
+/// The jobs of a regrade whose results differ from what counts, or counted before it was applied.
+macro_rules! changes {
+    ($columns:literal, $rest:literal) => {
+        concat!(
+            "SELECT ",
+            $columns,
+            " FROM job
+             JOIN submission ON submission.id = job.submission
+             JOIN account ON account.id = submission.account
+             JOIN result AS new ON new.job = job.id
+             LEFT JOIN grade ON grade.submission = submission.id
+             LEFT JOIN grade_change ON grade_change.submission = submission.id AND grade_change.campaign = job.campaign
+             LEFT JOIN result AS old ON old.id =
+                CASE WHEN grade_change.id IS NULL THEN grade.result ELSE grade_change.old_result END
+             WHERE job.campaign = ? AND new.code <> 'JE' AND (old.id IS NULL OR old.code <> new.code
+                OR coalesce(old.points, '') <> coalesce(new.points, '')) ",
+            $rest
+        )
+    };
+}
+
+async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, after: i64) -> Result<Regrade, Problem> {
+    let statement = regrades!("campaign.id = ? AND campaign.assignment = ?");
+    let found: Option<Regrade> = transaction.find(statement, values![id, assignment.id]).await?;
+    let mut regrade = found.ok_or_else(|| Problem::not_found("regrade"))?;
+    let count = |number: i64| usize::try_from(number).unwrap_or(0);
+    let statement = "SELECT count(*) AS n, count(CASE WHEN state IN ('waiting', 'running') THEN 1 END) AS waiting
+        FROM job WHERE campaign = ?";
+    let jobs = transaction.one(statement, values![id]).await?;
+    let statement = "SELECT count(*) AS n FROM result WHERE campaign = ? AND code = ?";
+    let failed = transaction.one(statement, values![id, JUDGE_ERROR]).await?;
+    regrade.submissions = count(jobs.int("n")?);
+    regrade.left = count(jobs.int("waiting")?);
+    regrade.failed = count(failed.int("n")?);
+    regrade.changed = count(transaction.one(changes!("count(*) AS n", ""), values![id]).await?.int("n")?);
+    let statement = changes!(
+        "job.submission, account.login, new.code AS new_code, new.points AS new_points,
+            new.summary AS new_summary, new.version AS new_version, new.task AS new_task,
+            old.code AS old_code, old.points AS old_points, old.summary AS old_summary,
+            old.version AS old_version, old.task AS old_task",
+        "AND job.submission > ? ORDER BY job.submission LIMIT ?"
+    );
+    regrade.changes = transaction.all(statement, values![id, after, CHANGES]).await?;
+    let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == CHANGES);
+    regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
+    Ok(regrade)
+}
+
+impl FromRow for Change {
+    fn from_row(row: &Row) -> Result<Self, DbError> {
+        Ok(read_row!(row => Self {
+            submission, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
+            why: why(row)?,
+        }))
+    }
+}
+
+/// Returns the differences of two gradings of one submission.
+fn why(row: &Row) -> Result<Vec<String>, DbError> {
+    let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
+        return Ok(vec!["there was no grade before".to_owned()]);
+    };
+    let mut why = Vec::new();
+    let new_version = row.text("new_version")?;
+    if old_version != new_version {
+        why.push(format!("version {old_version} before, {new_version} now"));
+    }
+    let read = |text: &str| serde_json::from_str::<Task>(text).ok();
+    if let (Some(old), Some(new)) = (read(&old_task), read(&row.text("new_task")?)) {
+        let mut differ = |what: &str, old: String, new: String| {
+            if old != new {
+                why.push(format!("{what} {old} before, {new} now"));
+            }
+        };
+        let or_suite = |value: Option<String>| value.unwrap_or_else(|| "of the suite".to_owned());
+        differ("suite", old.suite.short(), new.suite.short());
+        differ("rules", or_suite(old.rules), or_suite(new.rules));
+        differ("seconds", old.seconds.to_string(), new.seconds.to_string());
+        differ("program", old.program, new.program);
+    }
+    if why.is_empty() {
+        let words = "graded by the same, with another result: the program does not always do the same, or was slow";
+        why.push(words.to_owned());
+    }
+    Ok(why)
+}

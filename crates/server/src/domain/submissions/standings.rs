@@ -1,0 +1,259 @@
+//! How a class stands: which submission of each student counts. The database puts each student's attempts into one row,
+//! and only submissions that are shown are read whole. Many who ask at one time share one answer.
+use crate::domain::{
+    Staff,
+    view::{self, Assignment, Submission},
+};
+use crate::{
+    db::{DbError, Row, Transaction},
+    late::LatePolicy,
+    problem::Problem,
+    values,
+};
+use serde::Serialize;
+use std::{
+    collections::{BTreeMap, HashMap, HashSet},
+    sync::{Arc, Mutex, PoisonError},
+    time::Instant,
+};
+use utoipa::ToSchema;
+
+/// How a student stands in an assignment.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
+pub struct Standing {
+    /// The name of their account.
+    pub login: String,
+    /// The student's name.
+    pub name: String,
+    /// How often they handed in.
+    pub submissions: usize,
+    /// The submission that counts: the one with the most points, the later one of equals; the last one while none has
+    /// points.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub counts: Option<Submission>,
+}
+
+/// A student's standing in short: what a class's figures are made of.
+#[derive(Debug, Clone)]
+pub struct ShortStanding {
+    /// The name of their account.
+    pub login: String,
+    /// The student's name.
+    pub name: String,
+    /// How often they handed in.
+    pub submissions: usize,
+    /// The submission that counts.
+    pub counts: Option<CountedSubmission>,
+}
+
+/// The submission that counts, in short.
+#[derive(Debug, Clone)]
+pub struct CountedSubmission {
+    /// The submission's number.
+    pub id: i64,
+    /// The submission's points, by hand or less what being late costs.
+    pub points: Option<String>,
+    /// The submission's verdict, once it is graded.
+    pub verdict: Option<String>,
+    /// The most points that could be had.
+    pub max_points: Option<String>,
+    /// The line about it.
+    pub summary: String,
+}
+
+/// Answers that many who ask at one time share.
+#[derive(Debug, Default)]
+pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer>>>);
+
+/// The last answer, and when its making began.
+type SharedAnswer = tokio::sync::Mutex<Option<(Instant, Arc<Vec<ShortStanding>>)>>;
+
+/// With more answers than this those that nobody waits for are forgotten.
+const MANY: usize = 32;
+
+/// Submissions that are read whole at a time.
+const PAGE: usize = 500;
+
+impl SharedStandings {
+    fn answer_for(&self, assignment: i64) -> Arc<SharedAnswer> {
+        let mut answers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        if answers.len() > MANY {
+            answers.retain(|_, answer| Arc::strong_count(answer) > 1);
+        }
+        answers.entry(assignment).or_default().clone()
+    }
+}
+
+impl Staff {
+    /// Returns how all students stand in an assignment, in short and by their logins.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn short_standings(&self, assignment: &Assignment) -> Result<Arc<Vec<ShortStanding>>, Problem> {
+        let asked = Instant::now();
+        let answer = self.app.0.standings.answer_for(assignment.id);
+        let mut last = answer.lock().await;
+        // One that was begun since is as new as any.
+        if let Some((_, standings)) = last.as_ref().filter(|(began, _)| *began >= asked) {
+            return Ok(standings.clone());
+        }
+        let began = Instant::now();
+        let mut transaction = self.app.0.database.read().await?;
+        let standings = Arc::new(read(&mut transaction, self.course, assignment).await?);
+        *last = Some((began, standings.clone()));
+        Ok(standings)
+    }
+
+    /// Returns how all students stand in an assignment.
+    ///
+    /// # Errors
+    /// When there is no such assignment.
+    pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
+        let assignment = self.assignment(assignment).await?;
+        let short = self.short_standings(&assignment).await?;
+        self.whole_standings(&short).await
+    }
+
+    /// Returns how all students stand, with the submissions that count.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn whole_standings(&self, short: &[ShortStanding]) -> Result<Vec<Standing>, Problem> {
+        let ids: Vec<i64> = short.iter().filter_map(|one| Some(one.counts.as_ref()?.id)).collect();
+        let mut submissions = HashMap::new();
+        let mut transaction = self.app.0.database.read().await?;
+        for ids in ids.chunks(PAGE) {
+            let read = view::submissions_named(&mut transaction, ids).await?;
+            submissions.extend(read.into_iter().map(|submission| (submission.id, submission)));
+        }
+        let mut whole = |one: &ShortStanding| Standing {
+            login: one.login.clone(),
+            name: one.name.clone(),
+            submissions: one.submissions,
+            counts: one.counts.as_ref().and_then(|counts| submissions.remove(&counts.id)),
+        };
+        Ok(short.iter().map(&mut whole).collect())
+    }
+}
+
+/// The attempt of a student that counts so far.
+#[derive(Clone)]
+struct Best {
+    id: i64,
+    points: Option<String>,
+}
+
+impl Best {
+    /// Returns the best of attempts, oldest first: `ID MOMENT POINTS`, with commas between them.
+    fn from_list(
+        list: &str,
+        by_hand: &HashMap<i64, String>,
+        policy: &LatePolicy,
+        own_due: Option<i64>,
+    ) -> Option<Self> {
+        let mut attempts: Vec<(i64, i64, &str)> = list
+            .split(',')
+            .filter_map(|attempt| {
+                let mut words = attempt.split(' ');
+                Some((words.next()?.parse().ok()?, words.next()?.parse().ok()?, words.next()?))
+            })
+            .collect();
+        attempts.sort_unstable();
+        let value = |points: &Option<String>| points.as_ref().and_then(|points| points.parse::<f64>().ok());
+        attempts.into_iter().fold(None, |best: Option<Self>, (id, came_at, points)| {
+            let late = || policy.late(own_due, came_at).map_or(points.to_owned(), |late| late.left_of(points));
+            let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(late));
+            let one = Self { id, points: graded };
+            match best {
+                Some(best)
+                    if value(&best.points).is_some_and(|most| value(&one.points).is_none_or(|new| new < most)) =>
+                {
+                    Some(best)
+                }
+                _ => Some(one),
+            }
+        })
+    }
+}
+
+async fn read(
+    transaction: &mut Transaction,
+    course: i64,
+    assignment: &Assignment,
+) -> Result<Vec<ShortStanding>, DbError> {
+    let id = assignment.id;
+    let statement = "SELECT mark.submission, mark.points FROM submission JOIN mark ON mark.submission = submission.id
+        WHERE submission.assignment = ? AND mark.points IS NOT NULL";
+    let rows = transaction.rows(statement, values![id]).await?;
+    let by_hand = map(&rows, |row| Ok((row.int("submission")?, row.text("points")?)))?;
+    let statement = "SELECT account, due_at FROM extension WHERE assignment = ?";
+    let rows = transaction.rows(statement, values![id]).await?;
+    let own_due: HashMap<i64, i64> = map(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
+    // The members' names, and those of others who handed something in.
+    let statement = "SELECT account.id, account.login, account.name, coalesce(member.role, 'student') AS role
+        FROM account LEFT JOIN member ON member.account = account.id AND member.course = ?
+        WHERE member.role IS NOT NULL OR account.id IN (SELECT account FROM submission WHERE assignment = ?)";
+    let people = transaction.rows(statement, values![course, id]).await?;
+    // Staff tries assignments, too.
+    let staff = people.iter().filter(|row| row.text("role").is_ok_and(|role| role == "staff"));
+    let staff = staff.map(|row| row.int("id")).collect::<Result<HashSet<_>, _>>()?;
+    let statement = "SELECT submission.account, count(*) AS n, string_agg(submission.id || ' ' || submission.created_at
+               || ' ' || coalesce(result.points, '-'), ',') AS attempts
+        FROM submission LEFT JOIN grade ON grade.submission = submission.id
+        LEFT JOIN result ON result.id = grade.result
+        WHERE submission.assignment = ? GROUP BY submission.account";
+    let policy = assignment.settings.late_policy();
+    let rows = transaction.rows(statement, values![id]).await?;
+    let attempts: HashMap<i64, (usize, Option<Best>)> = map(&rows, |row| {
+        let account = row.int("account")?;
+        let best = Best::from_list(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
+        Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
+    })?;
+    let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
+    let statement = "SELECT grade.submission, result.verdict, result.max_points, result.summary FROM {each}
+        JOIN grade ON grade.submission = CAST(wanted.value AS {int}) JOIN result ON result.id = grade.result";
+    let rows = transaction.rows(statement, values![serde_json::to_string(&counted).unwrap_or_default()]).await?;
+    let grades: HashMap<i64, &Row> = map(&rows, |row| Ok((row.int("submission")?, row)))?;
+    let mut standings = BTreeMap::new();
+    for row in people.iter().filter(|row| row.int("id").is_ok_and(|id| !staff.contains(&id))) {
+        let (submissions, best) = attempts.get(&row.int("id")?).cloned().unwrap_or_default();
+        let counts = best.map(|Best { id, points }| {
+            let grade = grades.get(&id);
+            Ok::<_, DbError>(CountedSubmission {
+                id,
+                points,
+                verdict: grade.map(|grade| grade.text("verdict")).transpose()?,
+                max_points: grade.map(|grade| grade.maybe_text("max_points")).transpose()?.flatten(),
+                summary: grade.map(|grade| grade.text("summary")).transpose()?.unwrap_or_default(),
+            })
+        });
+        let (login, name, counts) = (row.text("login")?, row.text("name")?, counts.transpose()?);
+        standings.insert(login.clone(), ShortStanding { login, name, submissions, counts });
+    }
+    Ok(standings.into_values().collect())
+}
+
+fn map<'a, T>(
+    rows: &'a [Row],
+    read: impl Fn(&'a Row) -> Result<(i64, T), DbError>,
+) -> Result<HashMap<i64, T>, DbError> {
+    rows.iter().map(read).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_best_attempt_counts_and_the_later_of_equals() {
+        let by_hand = HashMap::from([(4, "9".to_owned())]);
+        let policy = LatePolicy { due_at: Some(100), late_days: 1, late_percent: 50, ..LatePolicy::default() };
+        let best = |list: &str| Best::from_list(list, &by_hand, &policy, None).map(|best| (best.id, best.points));
+        let points = |text: &str| Some(text.to_owned());
+        assert_eq!(best("2 50 7.5,1 50 7.5"), Some((2, points("7.5"))), "in whatever order they come");
+        assert_eq!(best("1 50 8,2 50 7,3 50 -"), Some((1, points("8"))), "one that waits counts for nothing yet");
+        assert_eq!(best("1 50 -,2 50 -"), Some((2, None)));
+        assert_eq!(best("1 50 6,2 101 10"), Some((1, points("6"))), "half of ten is less");
+        assert_eq!(best("1 50 6,4 101 10"), Some((4, points("9"))), "points by hand cost nothing");
+    }
+}

@@ -1,0 +1,230 @@
+//! Handing in: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
+use crate::domain::{
+    Member,
+    submissions::mark,
+    view::{self, Assignment, Entry, Submission},
+};
+use crate::{
+    calendar,
+    db::Transaction,
+    lti::score,
+    problem::Problem,
+    queue::{self, Lane, NewJob, Turn},
+    store::{Artifact, digest_of_file},
+    task::{Form, Input},
+    values,
+};
+use std::{
+    path::Path,
+    time::{Duration, Instant},
+};
+
+/// How long an upload that came waits until all that came before are written: at a deadline nobody is sent away whom
+/// the server let in.
+const CROWD: Duration = Duration::from_secs(240);
+
+const MINUTE: i64 = 60 * 1000;
+const HOUR: i64 = 60 * MINUTE;
+
+/// The upload.
+#[derive(Debug, Clone)]
+pub struct Upload<'a> {
+    /// The upload's form.
+    pub form: Form,
+    /// The upload's name: a plain file name.
+    pub name: &'a str,
+    /// Where its bytes lie.
+    pub file: &'a Path,
+    /// The sender's name for this upload: sent twice, it is one submission.
+    pub key: Option<&'a str>,
+    /// When its request came, by the database's clock: what counts for due dates and limits.
+    pub came_at: i64,
+}
+
+/// The outcome.
+#[derive(Debug, Clone)]
+pub struct SubmitResult {
+    /// The submission.
+    pub submission: Submission,
+    /// Whether it had been handed in before, by the same key.
+    pub repeated: bool,
+}
+
+impl Member {
+    /// Hands in.
+    ///
+    /// # Errors
+    /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same
+    /// key finds it.
+    pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
+        let (_, assignment) = self.read_at(assignment).await?;
+        if !assignment.settings.takes(upload.form) {
+            let (taken, found) = (assignment.settings.taken(), upload.form.describe());
+            return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
+        }
+        // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
+        // the one before leaves no room for.
+        let _turn = self.app.limits.turn(self.account.id).await?;
+        // Nothing is stored of an upload that is refused, or was stored before.
+        let artifact = digest_of_file(upload.file).await?;
+        let mut transaction = self.app.0.database.read().await?;
+        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
+            return Ok(SubmitResult { submission, repeated: true });
+        }
+        drop(transaction);
+        let artifact = self.app.0.store.put_file(upload.file).await?;
+        let mut transaction = self.app.0.database.begin_within(CROWD).await?;
+        // One after another for each student: numbers are given out here, and limits counted.
+        transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
+        if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
+            return Ok(SubmitResult { submission, repeated: true });
+        }
+        let submission = self.write(&mut transaction, &assignment, upload, &artifact).await?;
+        self.app.0.notifier.commit(transaction).await?;
+        Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
+    }
+
+    /// Returns when an upload came whose request is known since then, by the database's clock; and whether it may be
+    /// handed in, by its key and size where it announces them: what is refused later would have come for nothing.
+    ///
+    /// # Errors
+    /// When it may not.
+    pub async fn check_announced(
+        &self,
+        assignment: &str,
+        announced: Option<(Option<&str>, u64)>,
+        since: Instant,
+    ) -> Result<i64, Problem> {
+        let (mut transaction, assignment) = self.read_at(assignment).await?;
+        let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
+        let came_at = now - queue::millis(since.elapsed());
+        let Some((key, size)) = announced else { return Ok(came_at) };
+        if let Some(key) = key {
+            let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
+            // It may have been handed in before.
+            if transaction.row(statement, values![self.account.id, key]).await?.is_some() {
+                return Ok(came_at);
+            }
+        }
+        if !self.is_staff {
+            self.check_limits(&mut transaction, &assignment, came_at).await?;
+        }
+        self.check_quota(&mut transaction, size).await?;
+        Ok(came_at)
+    }
+
+    /// Returns the submission that this upload was before, or nothing where it may become one.
+    async fn admit(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        upload: &Upload<'_>,
+        artifact: &Artifact,
+    ) -> Result<Option<Submission>, Problem> {
+        if let Some(key) = upload.key
+            && let Some(submission) = self.by_key(transaction, key, assignment, artifact).await?
+        {
+            return Ok(Some(submission));
+        }
+        if !self.is_staff {
+            self.check_limits(transaction, assignment, upload.came_at).await?;
+        }
+        self.check_quota(transaction, artifact.size).await?;
+        Ok(None)
+    }
+
+    async fn by_key(
+        &self,
+        transaction: &mut Transaction,
+        key: &str,
+        assignment: &Assignment,
+        artifact: &Artifact,
+    ) -> Result<Option<Submission>, Problem> {
+        let statement = "SELECT assignment, digest, submission FROM upload_key WHERE account = ? AND word = ?";
+        let row = transaction.row(statement, values![self.account.id, key]).await?;
+        let Some(row) = row else { return Ok(None) };
+        if row.int("assignment")? != assignment.id || row.text("digest")? != artifact.digest.as_str() {
+            return Err(Problem::conflict(
+                "this key was used for another upload",
+                "give every upload a key of its own",
+            ));
+        }
+        Ok(Some(self.find_submission(transaction, row.int("submission")?).await?))
+    }
+
+    async fn check_limits(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        came_at: i64,
+    ) -> Result<(), Problem> {
+        let settings = &assignment.settings;
+        // A failure of the grader costs nobody a try.
+        let statement = "SELECT {now} AS now, count(*) AS n,
+               count(CASE WHEN submission.created_at > ? AND submission.created_at <= {now} THEN 1 END) AS recent,
+               min(CASE WHEN submission.created_at > ? THEN submission.created_at END) AS oldest
+            FROM submission
+            LEFT JOIN grade ON grade.submission = submission.id
+            LEFT JOIN result ON result.id = grade.result
+            WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'";
+        let row =
+            transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
+        let due = mark::due(transaction, assignment, self.account.id).await?;
+        if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
+            return Err(Problem::conflict("the assignment was due before", "ask the course's staff"));
+        }
+        if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
+            return Err(Problem::conflict(
+                format!("all {} submissions to this assignment are used up", settings.attempts),
+                "ask the course's staff",
+            ));
+        }
+        if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
+            // Until the oldest of this hour is an hour old.
+            let again = row.int("oldest")? + HOUR;
+            let detail = format!(
+                "at most {} submissions in an hour: the next one is taken from {} UTC",
+                settings.per_hour,
+                calendar::minute(again + MINUTE - 1)
+            );
+            let wait = (again - row.int("now")?).max(0).unsigned_abs().div_ceil(1000);
+            return Err(Problem { wait: Some(wait), ..Problem::too_many(detail) });
+        }
+        Ok(())
+    }
+
+    async fn write(
+        &self,
+        transaction: &mut Transaction,
+        assignment: &Assignment,
+        upload: &Upload<'_>,
+        artifact: &Artifact,
+    ) -> Result<i64, Problem> {
+        let input = Input { form: upload.form, name: upload.name.to_owned(), artifact: artifact.clone() };
+        let task = assignment.settings.task(input);
+        // A number that was given out once is not given out again, whatever was removed since.
+        let statement = "INSERT INTO numbering (assignment, account, last) VALUES (?, ?, 1)
+            ON CONFLICT (assignment, account) DO UPDATE SET last = numbering.last + 1 RETURNING last AS number";
+        let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;
+        let statement =
+            "INSERT INTO submission (assignment, account, number, form, file_name, digest, size, created_at)
+            VALUES (?, ?, ?, ?, ?, ?, ?, ?) RETURNING id";
+        let (account, digest) = (self.account.id, artifact.digest.as_str());
+        let size = i64::try_from(artifact.size).unwrap_or(i64::MAX);
+        let (form, came_at) = (upload.form.name(), upload.came_at);
+        let values = values![assignment.id, account, number, form, upload.name, digest, size, came_at];
+        let submission = transaction.one(statement, values).await?.int("id")?;
+        let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
+        let job = NewJob { lane: Lane::Grading, submission: Some(submission), campaign: None, turn, payload };
+        queue::enqueue(transaction, &job).await?;
+        score::changed(transaction, submission).await?;
+        if let Some(key) = upload.key {
+            let statement =
+                "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)";
+            transaction.execute(statement, values![account, key, assignment.id, digest, submission]).await?;
+        }
+        let entry = self.entry("submitted", Some(assignment.id), upload.name);
+        view::note(transaction, &Entry { submission: Some(submission), ..entry }).await?;
+        Ok(submission)
+    }
+}
