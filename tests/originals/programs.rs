@@ -164,6 +164,44 @@ fn right_programs_get_all_points_and_wrong_ones_less() {
     assert!(misjudged.is_empty(), "{misjudged:#?}");
 }
 
+/// A smallest scene is wrong for the same reason when it is run again, and right for every right program.
+#[test]
+fn smallest_scenes_show_what_they_were_made_for() {
+    const OF_EACH: usize = 2;
+    let Some(originals) = Originals::find() else { return };
+    let doctor = Workspace::new().run(["doctor"]);
+    if doctor.code != Some(0) {
+        skip(Need::Sandbox, doctor.out().lines().last().unwrap_or_default());
+        return;
+    }
+    for class in [T1M1, T1M2, T2M1].map(|milestone| Class::unpack(&originals.programs(), milestone)) {
+        let (workspace, key) = (&class.workspace, class.milestone.key());
+        let shrunk = |program: &Path, words: &[&str]| {
+            let program = program.to_string_lossy();
+            let run = workspace.run([&["shrink", &program, "--suite", key, "--format", "json"], words].concat());
+            let report: Value = serde_json::from_slice(&run.stdout).expect("JSON");
+            let small = report["smallest"][0].clone();
+            (small["explanations"].clone(), small["scene"].as_str().map(str::to_owned))
+        };
+        let wrong = class.is_right.iter().filter(|(name, right)| name.starts_with("variant") && !**right);
+        for (name, _) in wrong.take(OF_EACH) {
+            let (reason, scene) = shrunk(&class.program(name), &["--runs", "300"]);
+            workspace.write("small.xml", scene.unwrap_or_else(|| panic!("{key} {name}: no scene")));
+            // On this scene alone another mistake may do the same.
+            let again = shrunk(&class.program(name), &["small.xml"]).0;
+            assert!(again.to_string().contains(&reason[0]["key"].to_string()), "{key} {name}: {again}");
+            let group = "[[group]]\nname = \"small\"\nscenes = [\"small.xml\"]";
+            let suite = format!("schema = 1\nname = \"small\"\nmilestone = \"{key}\"\n{group}\n");
+            workspace.write("small.toml", suite);
+            let right = class.is_right.iter().filter(|(_, right)| **right);
+            let right = right.map(|(name, _)| class.program(name).to_string_lossy().into_owned());
+            let words = ["grade", "--suite", "small.toml", "--quiet", "--output", "out"].map(str::to_owned);
+            let run = workspace.run(words.into_iter().chain(right));
+            assert_eq!(run.code, Some(0), "{key} {name}: {}", run.shown());
+        }
+    }
+}
+
 /// Each program meets every tenth scene of its suite, the next one those beside them.
 #[test]
 fn the_drop_in_says_of_every_program_what_the_original_says() {

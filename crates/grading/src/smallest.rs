@@ -16,9 +16,10 @@ use fosssim_model::{
 use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
 use fosssim_shrink::{EndTest, Observation, Reducer, SceneSize, SmallScene, WrongReason, beginnings};
 use std::{
+    collections::BTreeMap,
     path::Path,
     sync::{
-        OnceLock,
+        Mutex, OnceLock, PoisonError,
         atomic::{AtomicU64, Ordering},
     },
     time::Duration,
@@ -169,7 +170,7 @@ impl Shrinker<'_> {
         let begun = processor_time(of);
         let time = || Duration::from_nanos(spent.load(Ordering::Relaxed)) + processor_time(of).saturating_sub(begun);
         for task in tasks.into_iter().take(MOST_SCENES) {
-            if time() >= self.limits.time {
+            if time() >= self.limits.time || self.runner.cancellation.is_cancelled() {
                 break;
             }
             let seen = self.observe(&task.scene, &spent)?;
@@ -179,9 +180,19 @@ impl Shrinker<'_> {
             let steps = cause.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let begin = beginnings(&task.scene, &seen.trace, &steps);
             let is_over = || time() >= self.limits.time || self.runner.cancellation.is_cancelled();
-            let found = self.reduced(&reason, begin, &spent, &is_over, progress)?;
+            // At best the scene alone tells the mistake from all others.
+            let mut search = |leads| self.reduced((&reason, leads), begin.clone(), &spent, &is_over, progress);
+            let (mut found, mut held) = search(true)?;
+            if found.is_none() {
+                (found, held) = search(false)?;
+            }
             let Some(small) = found else { continue };
-            let seen = self.observe(&small.scene, &spent)?;
+            let seen = match self.runner.cancellation.is_cancelled() {
+                // No program runs any more: what was seen before has to do.
+                true => held.remove(&scene::write(&small.scene)),
+                false => Some(self.observe(&small.scene, &spent)?),
+            };
+            let Some(seen) = seen else { continue };
             // A program that does another thing each time shows nothing.
             if reason.holds(&small.scene, &seen) {
                 return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen, time: time() }));
@@ -190,26 +201,34 @@ impl Shrinker<'_> {
         Ok(None)
     }
 
-    /// Makes one of these scenes smaller.
+    /// Makes one of these scenes smaller; returns it, and the program's runs on all scenes on which it was wrong.
     fn reduced(
         &self,
-        reason: &WrongReason,
+        (reason, leads): (&WrongReason, bool),
         begin: Vec<Scene>,
         spent: &AtomicU64,
         is_over: &EndTest<'_>,
         progress: &mut dyn FnMut(&SceneSize),
-    ) -> Result<Option<SmallScene>, String> {
-        let fault = OnceLock::new();
+    ) -> Result<(Option<SmallScene>, BTreeMap<String, Observation>), String> {
+        let (fault, held) = (OnceLock::new(), Mutex::new(BTreeMap::new()));
         let holds = |scene: &Scene| {
             if is_over() {
                 return None;
             }
             let seen = self.observe(scene, spent).map_err(|words| fault.set(words)).ok()?;
-            Some(reason.holds(scene, &seen))
+            if self.runner.cancellation.is_cancelled() {
+                return None;
+            }
+            let holds = if leads { reason.leads(scene, &seen) } else { reason.holds(scene, &seen) };
+            if holds {
+                held.lock().unwrap_or_else(PoisonError::into_inner).insert(scene::write(scene), seen);
+            }
+            Some(holds)
         };
         let reducer = Reducer::new(reason, self.assignment, &holds).until(is_over);
         let found = reducer.with_jobs(self.limits.jobs).with_runs(self.limits.runs).reduce(begin, progress);
-        fault.into_inner().map_or(Ok(found), Err)
+        let held = held.into_inner().unwrap_or_default();
+        fault.into_inner().map_or(Ok((found, held)), Err)
     }
 
     /// Runs the program on a scene.

@@ -82,6 +82,15 @@ impl WrongReason {
         }
     }
 
+    /// Returns whether it holds, and is what the scene alone says first: other mistakes would not do the same there.
+    #[must_use]
+    pub fn leads(&self, scene: &Scene, seen: &Observation) -> bool {
+        let Self::Mistake(mistake) = self else { return self.holds(scene, seen) };
+        FailureKind::from_end(&seen.ended).is_none()
+            && matches!(findings(scene, &seen.trace), Some(TraceFault::Wrong(_)))
+            && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.said() == mistake.said())
+    }
+
     /// Returns whether the reference with the named mistake is plainly wrong on a scene; nothing where no mistake of
     /// the catalogue is named.
     pub(crate) fn shows(&self, scene: &Scene) -> Option<bool> {

@@ -51,13 +51,6 @@ impl SceneSize {
             magnitude,
         }
     }
-
-    /// Returns the most significant digits that a number of the scene has.
-    #[must_use]
-    pub fn most_digits(scene: &Scene) -> usize {
-        let mut copy = scene.clone();
-        numbers(&mut copy).into_iter().map(|(_, value)| significant_digits(*value)).max().unwrap_or(0)
-    }
 }
 
 /// Returns a rank of integrators: the work of a step by hand.
@@ -75,10 +68,4 @@ const fn effort(integrator: Integrator) -> usize {
 fn written_digits(value: f64) -> usize {
     let text = value.abs().to_string();
     text.strip_prefix("0.").unwrap_or(&text).chars().filter(char::is_ascii_digit).count()
-}
-
-/// Returns the significant digits of a number: 1 for 0.05 and for 10, 2 for 1.5.
-fn significant_digits(value: f64) -> usize {
-    let digits: String = value.abs().to_string().chars().filter(char::is_ascii_digit).collect();
-    digits.trim_matches('0').len()
 }

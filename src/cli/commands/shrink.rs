@@ -83,7 +83,8 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
             console::print(ExplainedPage { diagnosis: &diagnosis, cards }.html())?;
         }
     }
-    Ok(exit::NOT_ACCEPTED)
+    // After an interruption the best so far was told.
+    Ok(if program.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Returns the name of the file for a further scene: `small-2.xml` behind `small.xml`.
