@@ -27,6 +27,31 @@ pub enum Visibility {
     AfterPublished,
 }
 
+/// A course's own words on a mistake or a group: reports show them beside ours.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
+#[schemars(deny_unknown_fields)]
+pub struct CourseNote {
+    /// A sentence.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub text: Option<String>,
+    /// The address of a lecture or a section; `http` or `https`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub link: Option<String>,
+    /// Points in the course's rubric; shown, never counted.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub points: Option<f64>,
+}
+
+/// A line of text, with the address as it is.
+impl std::fmt::Display for CourseNote {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let points = self.points.map(|points| format!("rubric: {points} points"));
+        let parts: Vec<&str> =
+            [&self.text, &self.link, &points].into_iter().filter_map(|part| part.as_deref()).collect();
+        formatter.write_str(&parts.join("; "))
+    }
+}
+
 /// A grade names no more submissions with the same program: a class of equal programs must not grow by its square.
 const MOST_NAMED: usize = 20;
 
@@ -76,6 +101,9 @@ pub struct Grade {
     /// The smallest scene for each cause, where these were asked for.
     #[serde(default)]
     pub smallest: Vec<SmallestScene>,
+    /// The course's own words on mistakes, by their keys.
+    #[serde(default)]
+    pub notes: BTreeMap<String, CourseNote>,
 }
 
 impl Grade {
@@ -128,6 +156,12 @@ impl Grade {
         let mut published = self.clone();
         published.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
         published
+    }
+
+    /// Returns the course's own words on a mistake.
+    #[must_use]
+    pub fn note(&self, mistake: &Explanation) -> Option<&CourseNote> {
+        self.notes.get(&mistake.key)
     }
 
     /// Returns all scenes in order.
@@ -254,6 +288,9 @@ pub struct GroupGrade {
     pub all_or_nothing: bool,
     /// Points for speed, where the suite gives any.
     pub speed: Option<SpeedGrade>,
+    /// The course's own words on it.
+    #[serde(default)]
+    pub note: Option<CourseNote>,
     /// The worst verdict of its scenes.
     pub verdict: Verdict,
     /// The group's scenes.

@@ -46,7 +46,7 @@ pub use counts::FindingCounts;
 pub use finding::{
     Finding, FindingDetail, FindingKind, FindingPlace, Part, PolynomialPlace, RecordPart, RescaledCoefficient, Role,
 };
-pub use grade::{Build, Grade, GroupGrade, PassedOver, SceneGrade, SubmissionFault, Visibility};
+pub use grade::{Build, CourseNote, Grade, GroupGrade, PassedOver, SceneGrade, SubmissionFault, Visibility};
 pub use hints::Hints;
 pub use outcome::{Damage, Outcome, Stop};
 pub use parity::{Overall, Residuals};

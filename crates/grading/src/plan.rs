@@ -110,8 +110,19 @@ fn resolved(
     files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
     problems: &mut Vec<(Position, String)>,
 ) -> Plan {
-    let Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, groups: patterns } =
-        suite;
+    let Suite {
+        name,
+        milestone,
+        run,
+        rules,
+        staff_hints,
+        show_output,
+        build,
+        limits,
+        patience,
+        notes,
+        groups: patterns,
+    } = suite;
     let mut seen = BTreeMap::new();
     let mut groups = Vec::new();
     for group in patterns {
@@ -145,9 +156,9 @@ fn resolved(
                 }
             }
         }
-        groups.push(Group { name: group.name, marking: group.marking, scenes });
+        groups.push(Group { name: group.name, marking: group.marking, note: group.note, scenes });
     }
-    Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, groups }
+    Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, notes, groups }
 }
 
 /// Reads, validates and looks up a suite in one go.

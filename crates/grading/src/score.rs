@@ -41,6 +41,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         points: with_speed(points, speed.as_ref()),
         max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
         speed,
+        note: None,
         verdict: scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun),
         scenes,
     }
@@ -52,7 +53,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
-        group(&planned.name, marking, results.by_ref().take(planned.scenes.len()).collect())
+        let results = results.by_ref().take(planned.scenes.len()).collect();
+        GroupGrade { note: planned.note.clone(), ..group(&planned.name, marking, results) }
     };
     let groups: Vec<GroupGrade> = plan.groups.iter().map(of_group).collect();
     let (verdict, points, max_points) = Grade::totals(&groups);
@@ -77,6 +79,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         same_program: Vec::new(),
         before: None,
         smallest: Vec::new(),
+        notes: plan.notes.clone(),
     }
 }
 

@@ -74,7 +74,16 @@ const GROUP: &[Key] = &[
     Key("credit", ValueKind::Choice(&["scenes", "steps", "all"]), false),
     Key("visibility", ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
     Key("hints", ValueKind::Choice(HINTS), false),
+    Key("text", ValueKind::Text, false),
+    Key("link", ValueKind::Text, false),
     Key("speed", ValueKind::Table(SPEED), false),
+];
+
+const MISTAKE: &[Key] = &[
+    Key("key", ValueKind::Text, true),
+    Key("text", ValueKind::Text, false),
+    Key("link", ValueKind::Text, false),
+    Key("points", ValueKind::Number("mistake.", MOST_POINTS), false),
 ];
 
 const SPEED: &[Key] = &[
@@ -95,15 +104,17 @@ const SUITE: &[Key] = &[
     Key("run", ValueKind::Texts, false),
     Key("build", ValueKind::Table(BUILD), false),
     Key("limits", ValueKind::Table(LIMITS), false),
+    Key("mistake", ValueKind::Tables(MISTAKE), false),
     Key("group", ValueKind::Tables(GROUP), false),
 ];
 
 /// The tables in which a key that stands elsewhere may have been meant to be.
-const PLACES: [(&str, &[Key]); 5] = [
+const PLACES: [(&str, &[Key]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
     ("a [[group]]", GROUP),
     ("[group.speed]", SPEED),
+    ("a [[mistake]]", MISTAKE),
     ("the top of the file", SUITE),
 ];
 

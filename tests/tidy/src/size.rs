@@ -18,7 +18,8 @@ const HUNDREDS: [(&str, usize); 22] = [
     ("findings", 29),
     // The main thread's share of a grading went to the jobs; `--timings` says where a grading's time goes.
     // `smallest` runs programs for `shrink`, which is new; nothing was removed for it.
-    ("grading", 49),
+    // A course's own words on mistakes and groups.
+    ("grading", 50),
     ("intake", 5),
     ("judge", 45),
     ("lab", 15),

@@ -60,6 +60,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         same_program: Vec::new(),
         before: None,
         smallest: Vec::new(),
+        notes: std::collections::BTreeMap::new(),
     };
     settle(&mut grade);
     grade

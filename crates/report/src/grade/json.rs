@@ -9,13 +9,14 @@ use crate::{
 };
 use fosssim_findings::Verdict;
 use fosssim_findings::{
-    Book, Build, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
+    Book, Build, CourseNote, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
     changes::Changes,
     located::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
 use fosssim_mistakes::together::{likely_mistake, likely_mistakes, worth};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
 const SCHEMA: u32 = 4;
@@ -85,6 +86,12 @@ view! {
         /// The smallest scene for each cause; left out where these were not asked for.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         smallest: Vec<SmallestView> = grade.smallest.iter().map(SmallestView::from).collect(),
+        /// The course's own words on these mistakes, by their keys; left out where there are none.
+        #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+        notes: BTreeMap<String, CourseNote> = likely_mistakes(grade)
+            .iter()
+            .filter_map(|(mistake, _)| Some((mistake.key.clone(), grade.note(mistake)?.clone())))
+            .collect(),
         /// Other submissions with the same program, byte for byte, at most 20; left out where there are none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         same_program: Vec<String> = grade.same_program.iter().map(|name| plain(name)).collect(),
@@ -168,6 +175,9 @@ view! {
         /// Points for speed, which are part of the group's points; left out where the suite gives none.
         #[serde(skip_serializing_if = "Option::is_none")]
         speed: Option<SpeedView> = group.speed.as_ref().map(SpeedView::from),
+        /// The course's own words on it; left out where there are none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        note: Option<CourseNote> = group.note.clone(),
         /// The group's scenes.
         scenes: Vec<SceneView> = group.scenes.iter().map(SceneView::from).collect(),
     }

@@ -17,7 +17,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     let wrong = wrong_scenes(grade);
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
-        let what = words::explanation::what_or(&mistake);
+        let what = words::explanation::what_or(&mistake) + &note(grade, &mistake);
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }
@@ -33,6 +33,11 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
 pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     let lost = together::worth(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", score(lost, grade.max_points)))
+}
+
+/// Returns the course's own words on a mistake, to follow ours; nothing where there are none.
+pub(crate) fn note(grade: &Grade, mistake: &Explanation) -> String {
+    grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
 /// Returns the number of scenes for which an explanation is looked for, with their noun.

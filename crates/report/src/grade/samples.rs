@@ -11,7 +11,7 @@ use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rul
 use fosssim_mistakes::diagnose::{About, Explanation};
 use fosssim_mistakes::together::settle;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
-use std::time::Duration;
+use std::{collections::BTreeMap, time::Duration};
 
 /// Returns a reason of these words: somebody else's may stand in every report.
 pub(crate) fn saying(words: &str) -> Reason {
@@ -56,6 +56,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
         same_program: Vec::new(),
         before: None,
         smallest: Vec::new(),
+        notes: BTreeMap::new(),
         shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
         groups,
         build: None,

@@ -2,7 +2,7 @@
 use super::{
     document,
     graded::key,
-    markup::{data, table, text},
+    markup::{data, note, table, text},
     smallest::pre,
 };
 use crate::foreign::one_line;
@@ -183,7 +183,7 @@ impl ClassPage<'_> {
                     let (page, key, name) = ((self.page)(first), key(&scene.scene), one_line(&scene.scene));
                     format!("To show it: <a href=\"{}#scene-{key}\">{}</a>. ", text(&page), text(&name))
                 });
-                let look = look + &self.show_in_class(mistake, members);
+                let look = look + &note(first.note(mistake)) + &self.show_in_class(mistake, members);
                 let heading = text(&one_line(&words::explanation::what_or(mistake)));
                 self.cluster(&heading, members, &look, Some(number))
             })

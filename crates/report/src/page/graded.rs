@@ -3,7 +3,7 @@ use super::{
     Card,
     case::mistakes,
     document,
-    markup::{table, text},
+    markup::{note, table, text},
     room::{self, OUTPUTS, Room},
     script, smallest,
 };
@@ -149,11 +149,12 @@ impl GradePage<'_> {
                 let _ = writeln!(
                     out,
                     "<section class=\"card mistake\"><p class=\"lead\">{}</p>{}<p>{verb} {explained} of \
-                    {wrong}.{}{}</p></section>",
+                    {wrong}.{}{}{}</p></section>",
                     text(&words::explanation::what_or(&mistake)),
                     forms.iter().map(|form| format!("<p>{}</p>", text(form))).collect::<String>(),
                     worth(grade, &mistake).map_or_else(String::new, |worth| format!(" Mending it is {worth}.")),
-                    shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene)))
+                    shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene))),
+                    note(grade.note(&mistake)),
                 );
             }
             out += "</div></section>\n";
@@ -275,8 +276,11 @@ fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: A
             if group.extra { " extra" } else { "" },
             group.scenes.len(),
         );
+        let columns = headings.len();
+        if group.note.is_some() {
+            let _ = writeln!(out, "<tr><td colspan=\"{columns}\">{}</td></tr>", note(group.note.as_ref()));
+        }
         if let Some(speed) = &group.speed {
-            let columns = headings.len();
             let _ = writeln!(out, "<tr><td colspan=\"{columns}\">{}</td></tr>", text(&speed_words(speed)));
         }
     }

@@ -1,6 +1,7 @@
 //! Hostile text in HTML: it stays text.
 use crate::foreign::is_unseen;
 use crate::number::{beside, general};
+use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
 /// Returns text in which what can't be seen, or turns the direction of writing, is written out as its code point.
@@ -30,6 +31,16 @@ pub(super) fn text(raw: &str) -> String {
         }
     }
     out
+}
+
+/// Returns a course's own words on something, with a link that can be followed.
+pub(super) fn note(note: Option<&CourseNote>) -> String {
+    let Some(CourseNote { text: words, link, points }) = note else { return String::new() };
+    let words = words.as_deref().map(text);
+    let link = link.as_deref().map(text).map(|link| format!("<a href=\"{link}\" rel=\"noopener\">{link}</a>"));
+    let points = points.map(|points| format!("rubric: {points} points"));
+    let parts: Vec<String> = [words, link, points].into_iter().flatten().collect();
+    format!(" <span class=\"hint\">The course: {}.</span> ", parts.join("; "))
 }
 
 /// Writes JSON as it may stand in a data block: nothing in it ends the element.

@@ -1,6 +1,7 @@
 use super::*;
 use crate::check::{StepChoice, WrongSteps};
 use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
+use fosssim_findings::CourseNote;
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
     config::{Credit, Marking, Visibility},
@@ -425,4 +426,27 @@ fn a_student_s_page_has_no_hidden_group() {
     for shown in ["Shown", "of 7", "wrong answer", "The grade has others, too", "id=\"submission-"] {
         assert!(student.contains(shown), "{shown}");
     }
+}
+
+/// A course's words on a mistake and a group stand beside them; its link can be followed, and text stays text.
+#[test]
+fn a_course_adds_its_own_words() {
+    let (_, result) =
+        drawn(&asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml"), "pe-linear-one-ab", Hints::Full);
+    let mut grade = wrong(vec![result], Hints::Full);
+    fosssim_mistakes::together::settle(&mut grade);
+    let note = CourseNote {
+        text: Some("Lecture <9>".to_owned()),
+        link: Some("https://example.edu/9?a&b".to_owned()),
+        points: Some(2.0),
+    };
+    grade.groups[0].note = Some(note.clone());
+    grade.notes = [("pe-linear-one-ab".to_owned(), note)].into();
+    let page = GradePage { grade: &grade, card: &|_| None, class: None, reader: Audience::Student }.html();
+    let told = "The course: Lecture &lt;9&gt;; <a href=\"https://example.edu/9?a&amp;b\" rel=\"noopener\">\
+                https://example.edu/9?a&amp;b</a>; rubric: 2 points.";
+    assert_eq!(page.matches(told).count(), 2, "{page}");
+    assert!(
+        crate::grade::head_lines(&grade)[0].contains("(The course: Lecture <9>; https://example.edu/9?a&b; rubric")
+    );
 }

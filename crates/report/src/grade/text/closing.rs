@@ -44,6 +44,9 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let what = plain(&words::explanation::what_or(mistake));
         let worth = worth(grade, mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
+        if let Some(note) = grade.note(mistake) {
+            let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
+        }
         for form in words::explanation::forms(mistake) {
             let _ = writeln!(text, "    {}", plain(&form));
         }

@@ -75,6 +75,9 @@ impl<'a> Scenes<'a, '_> {
         let name = style.paint(Look::Strong, &one_line(&group.name));
         let extra = if group.extra { " extra" } else { "" };
         let mut text = format!("\n{name} ({} of {}{extra})\n", reached(group.points), points(group.max_points));
+        if let Some(note) = &group.note {
+            text += &format!("  {}\n", one_line(&note.to_string()));
+        }
         let mut folded: BTreeMap<Verdict, u64> = BTreeMap::new();
         for scene in group.scenes.iter().filter(|scene| self.is_folded(scene)) {
             *folded.entry(scene.verdict).or_default() += 1;
