@@ -36,15 +36,8 @@ use std::sync::LazyLock;
 /// The part of the script that makes elements, for a page around reports, too.
 pub const ELEMENTS: &str = include_str!("viewer/elements.js");
 
-/// The viewer's script, in the order in which its parts need each other.
-const PARTS: [&str; 6] = [
-    ELEMENTS,
-    include_str!("viewer/tools.js"),
-    include_str!("viewer/motion.js"),
-    include_str!("viewer/drawing.js"),
-    include_str!("viewer/words.js"),
-    include_str!("viewer/viewer.js"),
-];
+/// The viewer's script. The server's pages have it, too.
+const VIEWER: &str = include!("viewer/viewer.in");
 const STYLE: &str = include_str!("style.css");
 
 /// The reference's run with a named mistake switched on.
@@ -81,9 +74,8 @@ pub struct Case<'a> {
 /// it goes over several lines.
 fn script() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
-        let lines = PARTS.iter().flat_map(|part| part.lines()).map(str::trim);
-        let lines: Vec<&str> = lines.filter(|line| !line.is_empty() && !line.starts_with("//")).collect();
-        format!("\"use strict\";\n(() => {{\n{}\n}})();\n", lines.join("\n"))
+        let lines = VIEWER.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
+        lines.flat_map(|line| [line, "\n"]).collect()
     });
     &SCRIPT
 }

@@ -166,7 +166,11 @@ function table(head, rows, caption) {
     "table",
     {},
     el("caption", {}, caption),
-    el("thead", {}, el("tr", {}, ...head.map((text) => el("th", { scope: "col", class: text ? "num" : "" }, text)))),
+    el(
+      "thead",
+      {},
+      el("tr", {}, ...head.map((text) => (text ? el("th", { scope: "col", class: "num" }, text) : el("td")))),
+    ),
     el(
       "tbody",
       {},
