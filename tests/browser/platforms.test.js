@@ -156,7 +156,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   const admin = await person();
   await admin.page.goto(link);
   await admin.page.getByRole("button", { name: "Sign in" }).click();
-  await admin.page.goto(`${address}/admin`);
+  await admin.page.goto(`${address}/admin/platforms`);
   const form = admin.page.locator("form[action='/admin/platforms']");
   for (const [label, value] of [
     ["Name here", "lms"],
@@ -171,6 +171,8 @@ test("a course of a platform, from its registration to a link in it", async () =
   }
   await form.getByRole("button").click();
   await admin.page.getByRole("cell", { name: place, exact: true }).waitFor();
+  await admin.page.getByRole("button", { name: "Copy Initiate login" }).click();
+  await admin.page.getByRole("button", { name: "Copied" }).waitFor();
   await accessible(admin.page);
 
   // In a frame there is a link, and a window of its own goes on.
@@ -191,7 +193,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   await page.getByLabel("Name in addresses").fill("m1");
   await page.getByLabel("Title").fill("Milestone one");
   await page.getByRole("button", { name: "Make the assignment" }).click();
-  await page.getByLabel("Students see it").check();
+  await page.getByLabel("Visible").check();
   await page.getByRole("button", { name: "Save" }).click();
   await page.goto(choosing);
   await accessible(page);

@@ -33,6 +33,8 @@ pub(crate) struct LikelyInFile {
 /// A group of scenes.
 #[derive(Debug, Deserialize)]
 pub(crate) struct GroupInFile {
+    #[serde(default)]
+    pub(crate) name: String,
     pub(crate) visibility: Option<String>,
     pub(crate) points: Option<f64>,
     pub(crate) max_points: Option<f64>,

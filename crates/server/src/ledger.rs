@@ -154,8 +154,8 @@ async fn write_result(
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
         "INSERT INTO result (job, submission, campaign, attempt, worker, verdict, code, points, max_points, summary,
-           version, task, seconds, grader, shown, failed, created_at)
-        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
+           version, task, seconds, grader, shown, failed, parts, created_at)
+        VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, {now}) RETURNING id";
     let result = transaction
         .one(
             statement,
@@ -175,7 +175,8 @@ async fn write_result(
                 seconds,
                 &outcome.grader,
                 outcome.shown.clone(),
-                outcome.failed.clone()
+                outcome.failed.clone(),
+                outcome.parts.clone()
             ],
         )
         .await?

@@ -31,6 +31,17 @@ pub struct KeptTexts {
     pub shown: String,
     /// The scenes that are not accepted, a line each with the verdict in short; nothing where they are not known.
     pub failed: Option<String>,
+    /// The grade's [`GradeParts`]; nothing where they are not known.
+    pub parts: Option<String>,
+}
+
+/// The parts of a grade that tables of a class have a column for.
+#[derive(Debug, Default, Serialize, Deserialize)]
+pub struct GradeParts {
+    /// Groups, each with its points; none where the grader failed.
+    pub groups: Vec<(String, Option<f64>)>,
+    /// Likely mistakes, in sentences.
+    pub mistakes: Vec<String>,
 }
 
 /// Reads the scenes of an outcome.
@@ -44,7 +55,11 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
     let shown = report.as_ref().map_or_else(|| Some(nothing()), shown_grade);
-    Ok(KeptTexts { shown: shown.as_ref().map(text).unwrap_or_default(), failed: report.as_ref().map(failed) })
+    Ok(KeptTexts {
+        shown: shown.as_ref().map(text).unwrap_or_default(),
+        failed: report.as_ref().map(failed),
+        parts: report.as_ref().map(parts),
+    })
 }
 
 /// Reads a `grade.json`, if it can be read.
@@ -57,6 +72,17 @@ fn failed(report: &GradeFile) -> String {
     let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
     // A name with a line break would make two lines.
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
+}
+
+/// Returns the parts of a grade, those of hidden groups, too.
+fn parts(report: &GradeFile) -> String {
+    let groups = report.grades.iter().flat_map(|grade| &grade.groups);
+    let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
+    let parts = GradeParts {
+        groups: groups.map(|group| (group.name.clone(), group.points)).collect(),
+        mistakes: mistakes.map(|mistake| mistake.text.clone()).collect(),
+    };
+    serde_json::to_string(&parts).unwrap_or_default()
 }
 
 fn text(shown: &ShownGrade) -> String {
@@ -186,5 +212,6 @@ mod tests {
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
         assert_eq!(failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
+        assert_eq!(parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[]}"#);
     }
 }

@@ -134,6 +134,10 @@ pub struct Outcome {
     /// The scenes that are not accepted, a line each with the verdict in short; nothing while nobody has looked.
     #[serde(skip)]
     pub failed: Option<String>,
+    /// Points of groups and likely mistakes, as [`GradeParts`](crate::shown::GradeParts); nothing while nobody has
+    /// looked.
+    #[serde(skip)]
+    pub parts: Option<String>,
 }
 
 impl Outcome {

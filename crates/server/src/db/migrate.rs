@@ -6,7 +6,7 @@ use sha2::{Digest, Sha256};
 use thiserror::Error;
 
 /// Every change, oldest first. The number of a change is its place in this list, from 1.
-const MIGRATIONS: [(&str, &str); 27] = [
+const MIGRATIONS: [(&str, &str); 28] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
     ("answers", include_str!("migrations/0003_answers.sql")),
@@ -34,6 +34,7 @@ const MIGRATIONS: [(&str, &str); 27] = [
     ("no sums", include_str!("migrations/0025_no_sums.sql")),
     ("no pauses", include_str!("migrations/0026_no_pauses.sql")),
     ("equal programs", include_str!("migrations/0027_equal_programs.sql")),
+    ("parts of grades", include_str!("migrations/0028_parts_of_grades.sql")),
 ];
 
 /// The version that this program works with.

@@ -28,13 +28,13 @@ pub use roles::admin::Admin;
 pub use roles::member::Member;
 pub use roles::person::{CourseOf, Person};
 pub use roles::remote::Remote;
-pub use roles::staff::{AssignmentChange, Staff};
+pub use roles::staff::{AssignmentChange, NewSuite, Staff, UploadedSuite};
 pub use roles::visitor::{Secrets, Visitor};
 pub use submissions::again::RegradeOrder;
-pub use submissions::failed::{AttemptChange, FailedScenes};
+pub use submissions::failed::{AttemptChange, FailedScenes, KeptResult};
 pub use submissions::mark::{Overview, Request, StudentHistory};
 pub use submissions::regrade::{Change, Regrade, RegradeState};
-pub use submissions::standings::{ShortStanding, Standing};
+pub use submissions::standings::{CountedSubmission, ShortStanding, Standing};
 pub use submissions::submit::{SubmitResult, Upload};
 pub use view::{Account, Assignment, Course, Event, History, Mark, Queue, QueueWorker, ResultView, Submission};
 

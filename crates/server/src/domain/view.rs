@@ -292,6 +292,7 @@ fn read_grade(row: &Row, result: i64) -> Result<ResultView, DbError> {
         verdict, code, points, max_points, summary, version, grader, seconds, shown;
         files: Vec::new(),
         failed: None,
+        parts: None,
     });
     Ok(ResultView { result, outcome, created_at: row.int("graded_at")? })
 }

@@ -142,8 +142,8 @@ impl JobSource for LocalSource {
                 return Err(SourceError::Refused(format!("{} is not in the store", file.name)));
             }
         }
-        let KeptTexts { shown, failed } = shown::read_texts(&self.store, &outcome.files).await?;
-        let outcome = Outcome { shown: Some(shown), failed, ..outcome.clone() };
+        let KeptTexts { shown, failed, parts } = shown::read_texts(&self.store, &outcome.files).await?;
+        let outcome = Outcome { shown: Some(shown), failed, parts, ..outcome.clone() };
         let mut transaction = self.database.begin().await?;
         let completion = ledger::finish(&mut transaction, lease, &outcome).await?;
         self.notifier.commit(transaction).await?;

@@ -8,6 +8,8 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     names: Vec<String>,
+    /// The title of each.
+    titles: Vec<String>,
     /// Names without a version, each with the newest version's name.
     newest: Vec<(String, String)>,
     default: String,
@@ -24,6 +26,8 @@ struct Entry {
     /// The name without its version.
     #[serde(default)]
     suite: String,
+    #[serde(default)]
+    title: String,
     default: bool,
 }
 
@@ -48,8 +52,8 @@ impl Suites {
                 newest.push((entry.suite.clone(), entry.name.clone()));
             }
         }
-        let names = list.suites.into_iter().map(|suite| suite.name).collect();
-        Ok(Self { names, newest, default: default.unwrap_or_default() })
+        let (names, titles) = list.suites.into_iter().map(|suite| (suite.name, suite.title)).unzip();
+        Ok(Self { names, titles, newest, default: default.unwrap_or_default() })
     }
 
     /// Returns the name for settings: that of the grader's default where there is none, and with the newest version
@@ -75,9 +79,9 @@ impl Suites {
         }
     }
 
-    /// Returns the suites' names; none where the grader can't be asked.
-    pub fn names(&self) -> &[String] {
-        &self.names
+    /// Returns the suites' names and titles; none where the grader can't be asked.
+    pub fn listed(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.names.iter().zip(&self.titles).map(|(name, title)| (name.as_str(), title.as_str()))
     }
 
     /// Returns which names there are, in words.

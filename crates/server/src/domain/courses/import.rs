@@ -25,6 +25,8 @@ pub struct MemberLine {
     // Where to send the link; not kept.
     pub(crate) email: String,
     pub(crate) role: String,
+    /// The columns of the table that have something in this line, and of which nothing is kept.
+    pub(crate) unused: Vec<String>,
     /// The error in the line; then nothing was done about any.
     pub(crate) error: Option<String>,
     /// A link that signs in once; nothing where the account was there before.
@@ -44,11 +46,8 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     }
     let mut places = [None; COLUMNS.len()];
     for (place, word) in words.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
-        let taken = column(word).is_some_and(|column| places[column].replace(place).is_none());
-        if !taken {
-            return Err(Problem::invalid(format!(
-                "the column {word} is not understood, or there twice: columns are name, login, email and role"
-            )));
+        if column(word).is_some_and(|column| places[column].replace(place).is_some()) {
+            return Err(Problem::invalid(format!("the column {word} is there twice")));
         }
     }
     match places[1] {
@@ -72,6 +71,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
     let mut places: [Option<usize>; COLUMNS.len()] = std::array::from_fn(Some);
+    let mut named = Vec::new();
     let mut logins = BTreeSet::new();
     let mut lines = Vec::new();
     let mut counted = (0, 1);
@@ -80,13 +80,16 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
         let words: Vec<String> = record.iter().map(cell).collect();
         if index == 0
-            && let Some(named) = headings(&words)?
+            && let Some(found) = headings(&words)?
         {
-            places = named;
+            (places, named) = (found, words);
             continue;
         }
-        let is_beside = |(place, word): (usize, &String)| !word.is_empty() && !places.contains(&Some(place));
-        let beside = words.iter().enumerate().any(is_beside);
+        let is_beside = |(place, word): &(usize, &String)| !word.is_empty() && !places.contains(&Some(*place));
+        let beside = words.iter().enumerate().filter(is_beside);
+        // Nothing is left out in silence: what no heading names is an error.
+        let unused: Option<Vec<String>> =
+            beside.map(|(place, _)| named.get(place).filter(|name| !name.is_empty()).cloned()).collect();
         let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
         // A reader of tables takes the second byte of a line's end for the next line's.
         let at = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
@@ -100,10 +103,21 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let error = match checked {
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("this login is in the table twice".to_owned()),
-            Ok(()) if beside => Some("there is more in this line than name, login, email and role".to_owned()),
+            Ok(()) if unused.is_none() => {
+                Some("there is more in this line than name, login, email and role".to_owned())
+            }
             Ok(()) => None,
         };
-        lines.push(MemberLine { line, name, login, email, role, error, link: None });
+        lines.push(MemberLine {
+            line,
+            name,
+            login,
+            email,
+            role,
+            unused: unused.unwrap_or_default(),
+            error,
+            link: None,
+        });
         if lines.len() > MOST {
             return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
         }
@@ -148,10 +162,13 @@ mod tests {
         assert_eq!((named[0].login.as_str(), named[0].name.as_str(), named[0].line), ("ada", "Ada", 2));
         let others = lines("User name;E-Mail;NAME;\nada;ada@example.org;Ada\n");
         assert_eq!((others[0].login.as_str(), others[0].email.as_str()), ("ada", "ada@example.org"));
-        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Number\nada,Ada,7\n", "Login,Name,Login\nada,Ada,eve\n"] {
+        for bad in ["Name,Email\nAda,a@b\n", "Login,Name,Login\nada,Ada,eve\n"] {
             assert!(read(bad).is_err(), "{bad}");
         }
+        let more = lines("Login,Name,Number,Group\nada,Ada,7,\n");
+        assert_eq!((more[0].unused.join(", "), &more[0].error), ("Number".to_owned(), &None));
         assert!(lines("Ada,ada,,student,7\n")[0].error.is_some(), "nothing is dropped in silence");
+        assert!(lines("Login,Name\nada,Ada,7\n")[0].error.is_some());
         let wrong = lines("Ada,ada\nAda,ada\n,eve\nEve,e v e\nEve,eve,,boss\n");
         let errors: Vec<bool> = wrong.iter().map(|line| line.error.is_some()).collect();
         assert_eq!(errors, [false, true, true, true, true]);

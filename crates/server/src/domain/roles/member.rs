@@ -99,6 +99,18 @@ impl Member {
         Ok(submissions)
     }
 
+    /// Returns all that the owner of a submission handed in to its assignment, newest first.
+    ///
+    /// # Errors
+    /// When they do not see the assignment.
+    pub async fn attempts(&self, submission: &Submission) -> Result<Vec<Submission>, Problem> {
+        if !self.is_staff {
+            return self.submissions(&submission.assignment).await;
+        }
+        let (mut transaction, assignment) = self.read_at(&submission.assignment).await?;
+        Ok(view::submissions_of(&mut transaction, assignment.id, submission.account).await?)
+    }
+
     /// Leaves out what the reader does not see: what is staff's, before it is published what the suite hides, and pages
     /// that tell of another part of the grade than the points that the reader sees.
     async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {

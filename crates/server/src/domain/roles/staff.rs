@@ -5,7 +5,7 @@ use crate::domain::{
     view::{self, Assignment, Event, Queue, Submission},
 };
 use crate::{
-    db::{DbError, FromRow, Transaction},
+    db::{DbError, FromRow, Transaction, from_row},
     lti::score,
     problem::{Problem, ensure},
     values,
@@ -24,9 +24,33 @@ pub struct AssignmentChange<'a> {
     pub visible: Option<bool>,
     /// The revision that the change is of: it is refused when there is a later one.
     pub revision: Option<i64>,
-    /// The digest of a suite that was just uploaded, and whether it hides groups.
-    pub suite: Option<(&'a str, bool)>,
+    /// A suite that was just uploaded.
+    pub suite: Option<&'a NewSuite>,
 }
+
+/// A suite that was just uploaded.
+#[derive(Debug, Clone, Default)]
+pub struct NewSuite {
+    /// The digest of the suite's archive.
+    pub digest: String,
+    /// The suite's name.
+    pub name: String,
+    /// Whether it hides groups.
+    pub hides: bool,
+}
+
+/// A suite that was uploaded to a course.
+#[derive(Debug, Clone)]
+pub struct UploadedSuite {
+    /// The digest of the suite's archive.
+    pub digest: String,
+    /// The suite's name; nothing where an older version received it.
+    pub name: String,
+    /// When it was uploaded last.
+    pub uploaded_at: Option<i64>,
+}
+
+from_row! { UploadedSuite { digest, name, uploaded_at } }
 
 /// Refuses a change of what somebody else changed meanwhile, and says who, and what.
 async fn check_revision(
@@ -90,9 +114,10 @@ impl Staff {
         let visible = change.visible.or(before.as_ref().map(|before| before.visible)).unwrap_or_default();
         let before = before.as_ref().map(|before| before.settings.clone()).unwrap_or_default();
         let settings = settings(&before)?.checked(&self.app.suites)?;
-        if let Some((digest, _)) = change.suite {
-            let statement = "INSERT INTO suite (course, digest) VALUES (?, ?) ON CONFLICT (course, digest) DO NOTHING";
-            transaction.execute(statement, values![self.course, digest]).await?;
+        if let Some(NewSuite { digest, name, .. }) = change.suite {
+            let statement = "INSERT INTO suite (course, digest, name, uploaded_at) VALUES (?, ?, ?, {now})
+                ON CONFLICT (course, digest) DO UPDATE SET name = excluded.name, uploaded_at = excluded.uploaded_at";
+            transaction.execute(statement, values![self.course, digest, name]).await?;
         }
         self.check_suite(&mut transaction, &settings).await?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
@@ -103,7 +128,7 @@ impl Staff {
             RETURNING id, slug, title, visible, settings, published_at, revision";
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
         // Another suite is known to hide groups or not to, or may.
-        let hides = change.suite.is_none_or(|(_, hides)| hides);
+        let hides = change.suite.is_none_or(|suite| suite.hides);
         let withholds = was_published && hides && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.text(), withholds];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
@@ -172,14 +197,25 @@ impl Staff {
         &self,
         slug: &str,
         archive: &Path,
-        hides: bool,
+        suite: NewSuite,
         revision: Option<i64>,
     ) -> Result<Assignment, Problem> {
         self.assignment(slug).await?;
-        let digest = self.app.0.store.put_file(archive).await?.digest.to_string();
-        let change = AssignmentChange { revision, suite: Some((&digest, hides)), ..AssignmentChange::default() };
-        let settings = |before: &Settings| Ok(Settings { suite_archive: Some(digest.clone()), ..before.clone() });
+        let suite = NewSuite { digest: self.app.0.store.put_file(archive).await?.digest.to_string(), ..suite };
+        let change = AssignmentChange { revision, suite: Some(&suite), ..AssignmentChange::default() };
+        let settings = |before: &Settings| Ok(Settings { suite_archive: Some(suite.digest.clone()), ..before.clone() });
         self.set_assignment(slug, change, settings).await
+    }
+
+    /// Returns the suites that were uploaded to the course, latest first.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn suites(&self) -> Result<Vec<UploadedSuite>, Problem> {
+        let mut transaction = self.app.0.database.read().await?;
+        let statement = "SELECT digest, name, uploaded_at FROM suite WHERE course = ?
+            ORDER BY coalesce(uploaded_at, 0) DESC, digest LIMIT 100";
+        Ok(transaction.all(statement, values![self.course]).await?)
     }
 
     /// Returns whether something that was handed in to an assignment was graded by a suite that hides groups.

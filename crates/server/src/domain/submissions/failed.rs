@@ -1,8 +1,9 @@
-//! The scenes that submissions do not have right: of a class for its staff, and from one attempt to the next.
-use crate::domain::{Member, Staff, view::Submission};
+//! The texts that are kept of results beside their grades, and the scenes that an attempt has changed.
+use crate::domain::{Member, view::Submission};
 use crate::{
-    db::{DbError, Transaction},
+    db::{DbError, Row},
     problem::Problem,
+    shown::GradeParts,
     values,
 };
 use std::collections::{BTreeMap, BTreeSet};
@@ -36,63 +37,55 @@ fn read(text: &str) -> FailedScenes {
     lines.map(|(code, scene)| (scene.to_owned(), code.to_owned())).collect()
 }
 
-impl Staff {
-    /// Returns the scenes that results of the course do not accept, by the results' numbers; of results of older
-    /// versions nothing.
+/// The texts that are kept of a result beside its grade.
+#[derive(Debug, Default)]
+pub struct KeptResult {
+    /// The scenes that it does not accept.
+    pub failed: FailedScenes,
+    /// Points of groups and likely mistakes; nothing where an older version graded.
+    pub parts: GradeParts,
+}
+
+impl Member {
+    /// Returns what is kept of results of the course, by their numbers; of results of older versions nothing. It tells
+    /// of hidden groups, too: students may ask about what is published, or hides nothing.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn failed_scenes(&self, results: &[i64]) -> Result<BTreeMap<i64, FailedScenes>, Problem> {
+    pub async fn kept_results(&self, results: &[i64]) -> Result<BTreeMap<i64, KeptResult>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT result.id, result.failed FROM result
+        let statement = "SELECT result.id, result.failed, result.parts FROM result
             JOIN submission ON submission.id = result.submission
             JOIN assignment ON assignment.id = submission.assignment
             WHERE assignment.course = ? AND result.failed IS NOT NULL
                AND result.id IN (SELECT CAST(wanted.value AS {int}) FROM {each})";
         let results = serde_json::to_string(results).unwrap_or_default();
         let rows = transaction.rows(statement, values![self.course, results]).await?;
-        Ok(rows.iter().map(|row| Ok((row.int("id")?, read(&row.text("failed")?)))).collect::<Result<_, DbError>>()?)
+        let kept = |row: &Row| {
+            let parts = row.maybe_text("parts")?.and_then(|parts| serde_json::from_str(&parts).ok());
+            let failed = read(&row.text("failed")?);
+            Ok((row.int("id")?, KeptResult { failed, parts: parts.unwrap_or_default() }))
+        };
+        Ok(rows.iter().map(kept).collect::<Result<_, DbError>>()?)
     }
-}
 
-impl Member {
-    /// Returns the change that a submission has made since the graded one of the same person before it. Nothing where
-    /// there is none, and to students nothing where groups of one of both are withheld.
+    /// Returns the changes that attempts of one person made since the graded one before each, by their numbers on this
+    /// server. They come newest first. Of attempts with groups that are withheld nothing is told.
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn change(&self, submission: &Submission) -> Result<Option<AttemptChange>, Problem> {
-        if submission.is_withheld || submission.grade.is_none() {
-            return Ok(None);
-        }
-        let mut transaction = self.app.0.database.read().await?;
-        Ok(change(&mut transaction, submission.id, self.is_staff || submission.is_published).await?)
+    pub async fn changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
+        let graded = attempts.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result)));
+        let graded: Vec<(&Submission, i64)> = graded.collect();
+        let results: Vec<i64> = graded.iter().filter(|(one, _)| !one.is_withheld).map(|(_, result)| *result).collect();
+        let kept = self.kept_results(&results).await?;
+        let change = |pair: &[(&Submission, i64)]| {
+            let [(later, new), (earlier, old)] = *pair else { return None };
+            let change = AttemptChange::between(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
+            Some((later.id, change))
+        };
+        Ok(graded.windows(2).filter_map(change).collect())
     }
-}
-
-async fn change(
-    transaction: &mut Transaction,
-    submission: i64,
-    sees_all: bool,
-) -> Result<Option<AttemptChange>, DbError> {
-    let statement = "SELECT earlier.number, old.shown, old.failed AS old_failed, new.failed AS new_failed
-        FROM submission AS later
-        JOIN grade AS new_grade ON new_grade.submission = later.id
-        JOIN result AS new ON new.id = new_grade.result
-        JOIN submission AS earlier ON earlier.assignment = later.assignment AND earlier.account = later.account
-           AND earlier.id < later.id
-        JOIN grade AS old_grade ON old_grade.submission = earlier.id
-        JOIN result AS old ON old.id = old_grade.result
-        WHERE later.id = ? ORDER BY earlier.id DESC LIMIT 1";
-    let Some(row) = transaction.row(statement, values![submission]).await? else { return Ok(None) };
-    // A result that hides nothing has nothing that is shown instead.
-    if !sees_all && row.maybe_text("shown")?.is_none_or(|shown| !shown.is_empty()) {
-        return Ok(None);
-    }
-    let (Some(old), Some(new)) = (row.maybe_text("old_failed")?, row.maybe_text("new_failed")?) else {
-        return Ok(None);
-    };
-    Ok(Some(AttemptChange::between(row.int("number")?, &read(&old), &read(&new))))
 }
 
 #[cfg(test)]

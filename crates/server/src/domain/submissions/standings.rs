@@ -53,8 +53,12 @@ pub struct CountedSubmission {
     pub id: i64,
     /// The submission's points, by hand or less what being late costs.
     pub points: Option<String>,
-    /// The submission's verdict, once it is graded.
-    pub verdict: Option<String>,
+    /// The submission's verdict in short, once it is graded.
+    pub code: Option<String>,
+    /// The digest of what was handed in, once it is graded.
+    pub digest: String,
+    /// Whether it came late, and that costs points.
+    pub is_late: bool,
     /// The most points that could be had.
     pub max_points: Option<String>,
     /// The line about it.
@@ -141,6 +145,7 @@ impl Staff {
 struct Best {
     id: i64,
     points: Option<String>,
+    is_late: bool,
 }
 
 impl Best {
@@ -161,9 +166,11 @@ impl Best {
         attempts.sort_unstable();
         let value = |points: &Option<String>| points.as_ref().and_then(|points| points.parse::<f64>().ok());
         attempts.into_iter().fold(None, |best: Option<Self>, (id, came_at, points)| {
-            let late = || policy.late(own_due, came_at).map_or(points.to_owned(), |late| late.left_of(points));
-            let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(late));
-            let one = Self { id, points: graded };
+            let late = policy.late(own_due, came_at);
+            let is_late = late.is_some();
+            let left = || late.map_or(points.to_owned(), |late| late.left_of(points));
+            let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(left));
+            let one = Self { id, points: graded, is_late };
             match best {
                 Some(best)
                     if value(&best.points).is_some_and(|most| value(&one.points).is_none_or(|new| new < most)) =>
@@ -210,19 +217,22 @@ async fn read(
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
     })?;
     let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
-    let statement = "SELECT grade.submission, result.verdict, result.max_points, result.summary FROM {each}
-        JOIN grade ON grade.submission = CAST(wanted.value AS {int}) JOIN result ON result.id = grade.result";
+    let statement = "SELECT grade.submission, submission.digest, result.code, result.max_points, result.summary
+        FROM {each} JOIN grade ON grade.submission = CAST(wanted.value AS {int})
+        JOIN submission ON submission.id = grade.submission JOIN result ON result.id = grade.result";
     let rows = transaction.rows(statement, values![serde_json::to_string(&counted).unwrap_or_default()]).await?;
     let grades: HashMap<i64, &Row> = map(&rows, |row| Ok((row.int("submission")?, row)))?;
     let mut standings = BTreeMap::new();
     for row in people.iter().filter(|row| row.int("id").is_ok_and(|id| !staff.contains(&id))) {
         let (submissions, best) = attempts.get(&row.int("id")?).cloned().unwrap_or_default();
-        let counts = best.map(|Best { id, points }| {
+        let counts = best.map(|Best { id, points, is_late }| {
             let grade = grades.get(&id);
             Ok::<_, DbError>(CountedSubmission {
                 id,
                 points,
-                verdict: grade.map(|grade| grade.text("verdict")).transpose()?,
+                is_late,
+                code: grade.map(|grade| grade.text("code")).transpose()?,
+                digest: grade.map(|grade| grade.text("digest")).transpose()?.unwrap_or_default(),
                 max_points: grade.map(|grade| grade.maybe_text("max_points")).transpose()?.flatten(),
                 summary: grade.map(|grade| grade.text("summary")).transpose()?.unwrap_or_default(),
             })

@@ -4,7 +4,7 @@ use super::super::{
     look, upload,
 };
 use crate::{
-    domain::{Assignment, AssignmentChange, Member, Settings, Staff, Standing, moment, moment_schema},
+    domain::{Assignment, AssignmentChange, Member, NewSuite, Settings, Staff, Standing, moment, moment_schema},
     problem::{Problem, ensure},
     schema::Title,
     worker,
@@ -101,19 +101,19 @@ pub(in crate::web) async fn receive_suite(
     ensure(std::fs::metadata(&received.file)?.len() > 0, Problem::no_suite("the file is empty"))?;
     let folder = tempfile::tempdir_in(&app.incoming)?;
     look::unpack(staff, &received.file, folder.path()).await?;
-    let hides = check_scenes(folder.path())?;
+    let suite = check_scenes(folder.path())?;
     if let Some(grader) = app.grader.as_deref() {
         worker::check_suite(grader, folder.path()).await.map_err(Problem::no_suite)?;
     }
-    staff.set_suite(assignment, &received.file, hides, asked.revision).await
+    staff.set_suite(assignment, &received.file, suite, asked.revision).await
 }
 
 /// The largest `suite.toml`.
 const SUITE_FILE: u64 = 1 << 20;
 
 /// Checks that a suite keeps to itself: its scenes are in the archive, or come with the program. A worker would read
-/// any other file of its machine for it. Returns whether it hides groups.
-fn check_scenes(folder: &Path) -> Result<bool, Problem> {
+/// any other file of its machine for it. Returns the suite, without a digest.
+fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     let file = folder.join("suite.toml");
     if std::fs::metadata(&file).is_ok_and(|file| file.len() > SUITE_FILE) {
         return Err(Problem::no_suite("suite.toml is larger than a mebibyte"));
@@ -132,7 +132,8 @@ fn check_scenes(folder: &Path) -> Result<bool, Problem> {
             return Err(Problem::no_suite(format!("the scene {scene} does not lie in the archive")));
         }
     }
-    Ok(hides)
+    let name = suite.get("name").and_then(toml::Value::as_str).unwrap_or_default().chars().take(200).collect();
+    Ok(NewSuite { name, hides, ..NewSuite::default() })
 }
 
 /// Returns the class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
@@ -147,11 +148,19 @@ pub(super) async fn export(
     let format = asked.format.as_deref().unwrap_or("csv");
     let disposition = format!("attachment; filename=\"{}-{assignment}.{format}\"", staff.slug);
     let (kind, body) = match format {
-        "csv" => ("text/csv; charset=utf-8", HttpBody::from(super::export_csv(&staff.standings(&assignment).await?)?)),
+        "csv" => ("text/csv; charset=utf-8", HttpBody::from(table(&staff, &assignment).await?)),
         "jsonl" => ("application/jsonl; charset=utf-8", lines(staff, &assignment).await?),
         _ => return Err(Problem::invalid("format is csv or jsonl")),
     };
     Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
+}
+
+/// Returns how all students stand, with the points of groups and the likely mistakes.
+async fn table(staff: &Staff, assignment: &str) -> Result<String, Problem> {
+    let standings = staff.standings(assignment).await?;
+    let grades = standings.iter().filter_map(|one| one.counts.as_ref()?.grade.as_ref());
+    let kept = staff.kept_results(&grades.map(|grade| grade.result).collect::<Vec<_>>()).await?;
+    super::export_csv(&standings, &kept)
 }
 
 /// Returns all submissions, a line for each, read as they are sent.

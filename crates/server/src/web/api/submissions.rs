@@ -5,9 +5,10 @@ use super::super::{
     look, upload,
 };
 use crate::{
-    domain::{History, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
+    domain::{History, KeptResult, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
+    task::rounded,
 };
 use axum::{
     Json,
@@ -16,7 +17,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
-use std::time::Instant;
+use std::{collections::BTreeMap, time::Instant};
 use utoipa::ToSchema;
 
 /// The parameters of an upload that is the whole body.
@@ -157,32 +158,45 @@ pub(super) async fn upload(
     Ok((headers, download::send(&member, &asked, &artifact).await?).into_response())
 }
 
-/// Returns a class's grades as a table. What spreadsheets would take for a formula is marked as text.
+/// Returns a class's grades as a table, with a column for each group. What spreadsheets would take for a formula is
+/// marked as text.
 ///
 /// # Errors
 /// Never, in memory.
-pub fn export_csv(standings: &[Standing]) -> Result<String, Problem> {
+pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Result<String, Problem> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let fault = |_| Problem::fault();
-    writer
-        .write_record(["login", "name", "submissions", "submission", "verdict", "points", "max_points", "graded_at"])
-        .map_err(fault)?;
+    let head = "login,name,submissions,submission,verdict,points,max_points,graded_at,likely_mistake";
+    let mut groups: Vec<&str> = Vec::new();
+    for (group, _) in kept.values().flat_map(|kept| &kept.parts.groups) {
+        if !groups.contains(&group.as_str()) {
+            groups.push(group);
+        }
+    }
+    let named = groups.iter().map(|group| cell(group));
+    writer.write_record(head.split(',').map(str::to_owned).chain(named)).map_err(fault)?;
     for standing in standings {
         let counts = standing.counts.as_ref();
         let grade = counts.and_then(|counts| counts.grade.as_ref());
         let or_empty = |text: Option<&String>| text.cloned().unwrap_or_default();
-        writer
-            .write_record([
-                cell(&standing.login),
-                cell(&standing.name),
-                standing.submissions.to_string(),
-                counts.map(|counts| counts.id.to_string()).unwrap_or_default(),
-                grade.map(|grade| cell(&grade.verdict)).unwrap_or_default(),
-                or_empty(grade.and_then(|grade| grade.points.as_ref())),
-                or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
-                grade.map(|grade| grade.created_at.to_string()).unwrap_or_default(),
-            ])
-            .map_err(fault)?;
+        let parts = grade.and_then(|grade| Some(&kept.get(&grade.result)?.parts));
+        let of_group = |name: &&str| {
+            let found = parts?.groups.iter().find(|(group, _)| group == name)?;
+            found.1.map(|points| rounded(&points.to_string()))
+        };
+        let of_groups = groups.iter().map(|group| of_group(group).unwrap_or_default());
+        let row = [
+            cell(&standing.login),
+            cell(&standing.name),
+            standing.submissions.to_string(),
+            counts.map(|counts| counts.id.to_string()).unwrap_or_default(),
+            grade.map(|grade| cell(&grade.verdict)).unwrap_or_default(),
+            or_empty(grade.and_then(|grade| grade.points.as_ref())),
+            or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
+            grade.map(|grade| grade.created_at.to_string()).unwrap_or_default(),
+            parts.map(|parts| cell(&parts.mistakes.join(" "))).unwrap_or_default(),
+        ];
+        writer.write_record(row.into_iter().chain(of_groups)).map_err(fault)?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
     String::from_utf8(bytes).map_err(|_| Problem::fault())

@@ -1,4 +1,4 @@
-//! The pages of administrators.
+//! The pages of administrators, by subject.
 use super::{
     super::{
         api::{CourseWish, WorkerTokenName},
@@ -14,13 +14,24 @@ use crate::{
     problem::Problem,
 };
 use askama::Template;
-use axum::response::Redirect;
+use axum::{http::Uri, response::Redirect};
 use serde::Deserialize;
+
+/// The subjects: the ends of their addresses, and their titles.
+const PARTS: [(&str, &str); 5] = [
+    ("", "Courses"),
+    ("/people", "People"),
+    ("/platforms", "Learning platforms"),
+    ("/workers", "Queue and workers"),
+    ("/log", "Log"),
+];
 
 #[derive(Template)]
 #[template(path = "admin.html")]
 struct AdminPage {
     frame: PageFrame,
+    /// The subject.
+    part: (&'static str, &'static str),
     accounts: Vec<Account>,
     look: People,
     /// The address of the next page of accounts.
@@ -42,11 +53,15 @@ pub(super) struct NewAccount {
     is_admin: Option<String>,
 }
 
-async fn make(admin: &Admin, look: People, link: Option<String>, token: Option<String>) -> Page {
+async fn make(admin: &Admin, end: &str, look: People, link: Option<String>, token: Option<String>) -> Page {
+    let part = PARTS.into_iter().find(|part| part.0 == end).unwrap_or(PARTS[0]);
+    let frame =
+        PageFrame::for_account(&admin.account).then("/admin".to_owned(), "Administration").beside("/admin", &PARTS);
     let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
     let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
     show(&AdminPage {
-        frame: PageFrame::for_account(&admin.account).then("/admin".to_owned(), "Administration"),
+        frame: frame.then(format!("/admin{}", part.0), part.1),
+        part,
         accounts,
         look,
         after,
@@ -60,22 +75,22 @@ async fn make(admin: &Admin, look: People, link: Option<String>, token: Option<S
     })
 }
 
-pub(super) async fn page(admin: Admin, QueryInput(look): QueryInput<People>) -> Page {
-    make(&admin, look, None, None).await
+pub(super) async fn page(admin: Admin, uri: Uri, QueryInput(look): QueryInput<People>) -> Page {
+    make(&admin, uri.path().trim_start_matches("/admin"), look, None, None).await
 }
 
 pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Page {
     let link = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?.link;
-    make(&admin, People::default(), link, None).await
+    make(&admin, "/people", People::default(), link, None).await
 }
 
 pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Page {
     let token = admin.new_worker_token(form.name.trim()).await?.token;
-    make(&admin, People::default(), None, Some(token)).await
+    make(&admin, "/workers", People::default(), None, Some(token)).await
 }
 
 deeds! {
     new_course(admin: Admin, form: CourseWish):
         admin.new_course(form.slug.trim(), form.title.trim()) => "/c/{}", form.slug.trim();
-    revoke_worker(admin: Admin, { id }): admin.revoke_worker_token(id) => "/admin";
+    revoke_worker(admin: Admin, { id }): admin.revoke_worker_token(id) => "/admin/workers";
 }

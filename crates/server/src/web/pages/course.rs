@@ -129,7 +129,8 @@ pub(super) async fn course(member: Member) -> Page {
         let (work, overview) = (OwnWork::read(&member, &assignment).await?, member.overview(&assignment).await?);
         assignments.push(Row { assignment, work, overview });
     }
-    let (frame, kept) = (PageFrame::course(&member), member.told_of_kept().await?);
+    let place = format!("/c/{}", member.slug);
+    let (frame, kept) = (PageFrame::course(&member).then(place, &member.title), member.told_of_kept().await?);
     show(&CoursePage { frame, member, assignments, kept })
 }
 

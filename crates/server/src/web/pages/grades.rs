@@ -4,7 +4,7 @@ use super::{
     Page, PageFrame, scenes, see,
     settings::{Grading, SuiteOption, suites},
     show,
-    statistics::Statistics,
+    statistics::{self, Statistics},
     text,
 };
 use crate::{
@@ -30,7 +30,7 @@ struct GradesPage {
     regrades: Vec<Regrade>,
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
-    statistics: Option<Statistics>,
+    statistics: Statistics,
     /// Scenes that somebody on the page has wrong, and who.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
@@ -57,6 +57,12 @@ pub(super) struct Look {
     q: String,
     #[serde(default)]
     sort: String,
+    /// The part of the class.
+    #[serde(default)]
+    part: String,
+    /// A likely mistake.
+    #[serde(default)]
+    mistake: String,
     page: Option<usize>,
 }
 
@@ -65,7 +71,12 @@ impl Look {
     /// after.
     fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
-        let is_wanted = |one: &&ShortStanding| one.login.contains(&words) || one.name.to_lowercase().contains(&words);
+        let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
+        let is_wanted = |one: &&ShortStanding| {
+            (one.login.contains(&words) || one.name.to_lowercase().contains(&words))
+                && statistics::is_in(one, &self.part)
+                && (self.mistake.is_empty() || made(one))
+        };
         let mut standings: Vec<&ShortStanding> = standings.iter().filter(is_wanted).collect();
         let points = |one: &ShortStanding| {
             let points = one.counts.as_ref().and_then(|counts| counts.points.as_ref());
@@ -83,7 +94,8 @@ impl Look {
         let page = self.page.unwrap_or(1).clamp(1, pages);
         let address = |page: usize| {
             let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
-            query.append_pair("q", &self.q).append_pair("sort", &self.sort).append_pair("page", &page.to_string());
+            query.append_pair("q", &self.q).append_pair("sort", &self.sort).append_pair("part", &self.part);
+            query.append_pair("mistake", &self.mistake).append_pair("page", &page.to_string());
             query.finish()
         };
         let shown = standings.into_iter().skip((page - 1) * PAGE).take(PAGE).cloned().collect();
@@ -127,9 +139,9 @@ pub(super) async fn class(
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
-        scenes: scenes::wrong(&standings, &staff.failed_scenes(&results).await?),
+        scenes: scenes::wrong(&standings, &staff.kept_results(&results).await?),
         standings,
-        suites: suites(&assignment.settings, staff.app.suites.names()),
+        suites: suites(&staff, &assignment.settings).await?,
         hides: staff.hides(&assignment).await?,
         assignment,
     })

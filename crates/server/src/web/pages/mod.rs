@@ -18,11 +18,13 @@ macro_rules! deeds {
 
 mod account;
 mod administration;
+mod beside;
 mod checker;
 mod course;
 mod grades;
 mod platform;
 mod removal;
+mod report;
 mod scenes;
 mod settings;
 mod sign_in;
@@ -72,6 +74,10 @@ pages! {
     post "/account/tokens" => account::new_token,
     post "/account/tokens/{id}/revoke" => account::revoke_token,
     get "/admin" => administration::page,
+    get "/admin/people" => administration::page,
+    get "/admin/platforms" => administration::page,
+    get "/admin/workers" => administration::page,
+    get "/admin/log" => administration::page,
     post "/admin/courses" => administration::new_course,
     post "/admin/accounts" => administration::set_account,
     post "/admin/accounts/{login}/remove" => removal::remove_person,
@@ -96,6 +102,7 @@ pages! {
     post "/c/{course}/members" => course::set_member,
     get "/c/{course}/members/import" => student::import,
     post "/c/{course}/members/import" => student::import_table,
+    post "/c/{course}/members/table" => student::import_file,
     post "/c/{course}/members/{login}/remove" => course::remove_member,
     post "/c/{course}/members/{login}/link" => course::member_link,
     post "/c/{course}/members/roster" => platform::read_roster,
@@ -119,6 +126,7 @@ pages! {
     post "/c/{course}/a/{assignment}/regrades/{id}/apply" => grades::apply,
     post "/c/{course}/a/{assignment}/regrades/{id}/discard" => grades::discard,
     get "/c/{course}/s/{id}" => submission::submission,
+    get "/c/{course}/s/{id}/beside" => beside::page,
     get "/c/{course}/a/{assignment}/students/{login}" => student::page,
     post "/c/{course}/a/{assignment}/students/{login}/extension" => student::extend,
     post "/c/{course}/s/{id}/mark" => student::mark,
@@ -126,14 +134,24 @@ pages! {
     post "/c/{course}/s/{id}/remove" => removal::remove_submission,
     get "/static/style.css" => style,
     get "/static/page.js" => script,
+    get "/static/report.js" => viewer,
 }
 
 async fn style() -> Response {
     // One style sheet for reports and pages; what only pages have comes behind it.
     constant(
         "text/css; charset=utf-8",
-        concat!(include_str!("../../../../report/src/page/style.css"), include_str!("static/style.css")),
+        concat!(
+            include!("../../../../render/src/plot/style.in"),
+            include_str!("../../../../report/src/page/style.css"),
+            include_str!("static/style.css")
+        ),
     )
+}
+
+/// Returns the script of reports.
+async fn viewer() -> Response {
+    constant("text/javascript; charset=utf-8", include!("../../../../report/src/page/viewer/viewer.in"))
 }
 
 async fn script() -> Response {
@@ -152,24 +170,48 @@ pub(super) struct PageFrame {
     is_admin: bool,
     /// The way here: addresses and titles.
     way: Vec<(String, String)>,
+    /// The pages about the same thing: addresses and titles.
+    tabs: Vec<(String, &'static str)>,
+    /// The address of the one of them that this page is.
+    tab: String,
 }
 
 impl PageFrame {
     fn for_account(account: &Account) -> Self {
-        Self { login: Some(account.login.clone()), is_admin: account.is_admin, way: Vec::new() }
+        Self { login: Some(account.login.clone()), is_admin: account.is_admin, ..Self::default() }
     }
 
     fn course(member: &Member) -> Self {
-        Self::for_account(&member.account).then(format!("/c/{}", member.slug), &member.title)
+        let place = format!("/c/{}", member.slug);
+        let frame = Self::for_account(&member.account).then(place.clone(), &member.title);
+        let pages = [("", "Assignments"), ("/members", "Members"), ("/queue", "Queue"), ("/audit", "Audit log")];
+        if member.is_staff { frame.beside(&place, &pages) } else { frame }
     }
 
     /// Returns the place at an assignment of a course.
     fn assignment(member: &Member, assignment: &Assignment) -> Self {
-        Self::course(member).then(format!("/c/{}/a/{}", member.slug, assignment.slug), &assignment.title)
+        let place = format!("/c/{}/a/{}", member.slug, assignment.slug);
+        let pages = [("/class", "Class"), ("", "Hand in"), ("/settings", "Settings")];
+        let frame = Self::course(member);
+        match member.is_staff {
+            true => frame.then(format!("{place}/class"), &assignment.title).beside(&place, &pages),
+            false => frame.then(place, &assignment.title),
+        }
     }
 
+    /// Sets the pages about the thing at an address, by what their own addresses have behind it.
+    fn beside(mut self, place: &str, pages: &[(&str, &'static str)]) -> Self {
+        self.tabs = pages.iter().map(|(end, title)| (format!("{place}{end}"), *title)).collect();
+        self
+    }
+
+    /// Goes on to a page: to one of those about the same thing, or to one behind them.
     fn then(mut self, address: String, title: &str) -> Self {
-        self.way.push((address, title.to_owned()));
+        if self.tabs.iter().any(|(tab, _)| *tab == address) {
+            self.tab = address;
+        } else if self.way.last().is_none_or(|(last, _)| *last != address) {
+            self.way.push((address, title.to_owned()));
+        }
         self
     }
 }

@@ -252,9 +252,10 @@ deeds! {
         let known = choice.known.as_deref().filter(|slug| !slug.is_empty());
         person.choose_course(&secret, known, (choice.slug.trim(), choice.title.trim()))
     } => "/lti/choose/{secret}";
-    set_platform(admin: Admin, form: NewPlatform): admin.set_platform(form.name.trim(), &form.wish()) => "/admin";
-    shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin";
-    new_key(admin: Admin): admin.new_platform_key() => "/admin";
+    set_platform(admin: Admin, form: NewPlatform):
+        admin.set_platform(form.name.trim(), &form.wish()) => "/admin/platforms";
+    shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin/platforms";
+    new_key(admin: Admin): admin.new_platform_key() => "/admin/platforms";
     send_scores(staff: Staff, { course, assignment }):
         staff.send_scores(&assignment) => "/c/{course}/a/{assignment}/class";
 }

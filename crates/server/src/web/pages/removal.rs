@@ -30,6 +30,6 @@ deeds! {
     remove_course(admin: Admin, { course }, form: Confirmation):
         { form.is(&course)?; admin.remove_course(&course) } => "/";
     remove_person(admin: Admin, { login }, form: Confirmation):
-        { form.is(&login)?; admin.remove_person(&login) } => "/admin";
-    shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin";
+        { form.is(&login)?; admin.remove_person(&login) } => "/admin/people";
+    shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin/people";
 }

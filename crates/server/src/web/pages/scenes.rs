@@ -1,16 +1,16 @@
 //! The scenes that submissions do not have right, in tables and sentences.
-use crate::domain::{AttemptChange, FailedScenes, Standing};
+use crate::domain::{AttemptChange, KeptResult, Standing};
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// The greatest number of scenes that are named in a sentence.
 const NAMED: usize = 3;
 
 /// Returns the scenes that somebody has wrong, by the results that count, and those who have, most of them first.
-pub(super) fn wrong(standings: &[Standing], failed: &BTreeMap<i64, FailedScenes>) -> Vec<(String, Vec<String>)> {
+pub(super) fn wrong(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
         let grade = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref());
-        for scene in grade.and_then(|grade| failed.get(&grade.result)).into_iter().flat_map(BTreeMap::keys) {
+        for scene in grade.and_then(|grade| kept.get(&grade.result)).into_iter().flat_map(|kept| kept.failed.keys()) {
             logins.entry(scene).or_default().push(standing.login.clone());
         }
     }

@@ -8,14 +8,14 @@ use super::{
 };
 use crate::{
     calendar,
-    domain::{Assignment, AssignmentChange, Settings, Staff},
+    domain::{Assignment, AssignmentChange, Settings, Staff, UploadedSuite},
     problem::{Problem, ensure},
 };
 use askama::Template;
 use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
 
-/// The value of an uploaded suite in the list of suites.
+/// The beginning of the value of an uploaded suite in the list of suites; its digest follows.
 const UPLOADED: &str = "(uploaded)";
 
 const MIB: f64 = 1_048_576.0;
@@ -33,19 +33,27 @@ struct SettingsPage {
 /// A suite in a form: value, words, and whether it is this one.
 pub(super) type SuiteOption = (String, String, bool);
 
-/// Returns the suites to choose from.
-pub(super) fn suites(settings: &Settings, names: &[String]) -> Vec<SuiteOption> {
+/// Returns the suites to choose from: those that were uploaded to the course, and those that come with the grader.
+pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
     let mut suites = Vec::new();
-    if let Some(digest) = &settings.suite_archive {
-        suites.push((UPLOADED.to_owned(), format!("your own, {}", text::short(digest)), true));
+    for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
+        let name = if name.is_empty() { text::short(&digest) } else { &name };
+        let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::minute(at))).unwrap_or_default();
+        let is_this = settings.suite_archive.as_ref() == Some(&digest);
+        suites.push((format!("{UPLOADED}{digest}"), format!("{name} (yours{at})"), is_this));
     }
     let is_named = settings.suite_archive.is_none();
-    let other = Some(&settings.suite).filter(|suite| !names.contains(suite));
-    for name in names.iter().chain(other) {
-        let words = if name.is_empty() { "the grader's default".to_owned() } else { name.clone() };
-        suites.push((name.clone(), words, is_named && *name == settings.suite));
+    let known = &staff.app.suites;
+    let other = Some((settings.suite.as_str(), "")).filter(|(suite, _)| known.listed().all(|(name, _)| name != *suite));
+    for (name, title) in known.listed().chain(other) {
+        let words = match (name, title) {
+            ("", _) => "the grader's default".to_owned(),
+            (name, "") => name.to_owned(),
+            (name, title) => format!("{title} ({name})"),
+        };
+        suites.push((name.to_owned(), words, is_named && *name == settings.suite));
     }
-    suites
+    Ok(suites)
 }
 
 /// The part of a form about grading.
@@ -66,9 +74,9 @@ impl Grading {
     /// Returns the settings with what the form says.
     pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
-        let (suite, suite_archive) = match self.suite.as_str() {
-            UPLOADED => (before.suite.clone(), before.suite_archive.clone()),
-            name => (name.trim().to_owned(), None),
+        let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED) {
+            Some(digest) => (before.suite.clone(), Some(digest.to_owned())),
+            None => (self.suite.trim().to_owned(), None),
         };
         Ok(Settings {
             suite,
@@ -101,9 +109,7 @@ pub(super) struct NewSettings {
     due: String,
     #[serde(default)]
     due_zone: String,
-    #[serde(default)]
     late_days: String,
-    #[serde(default)]
     late_percent: String,
     #[serde(default)]
     time_zone: String,
@@ -111,8 +117,6 @@ pub(super) struct NewSettings {
 
 impl NewSettings {
     fn over(&self, before: &Settings) -> Result<Settings, Problem> {
-        // A form from before they were there.
-        let late = |what: &str, text: &str, before: u32| if text.is_empty() { Ok(before) } else { parsed(what, text) };
         let megabytes: f64 = parsed("the largest upload", &self.megabytes)?;
         ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload is at most 1024 MiB"))?;
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
@@ -122,8 +126,8 @@ impl NewSettings {
             max_bytes: (megabytes * MIB).round() as u64,
             attempts: parsed("submissions in all", &self.attempts)?,
             per_hour: parsed("submissions in an hour", &self.per_hour)?,
-            late_days: late("days", &self.late_days, before.late_days)?,
-            late_percent: late("percent", &self.late_percent, before.late_percent)?,
+            late_days: parsed("late days", &self.late_days)?,
+            late_percent: parsed("the late penalty", &self.late_percent)?,
             due_at: moment(&self.due, &self.due_zone, before.due_at)?,
             time_zone: match self.time_zone.trim() {
                 "" => None,
@@ -150,7 +154,7 @@ pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, 
     let assignment = staff.assignment(&assignment).await?;
     let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
     let frame = PageFrame::assignment(&staff, &assignment).then(address, "Settings");
-    let suites = suites(&assignment.settings, staff.app.suites.names());
+    let suites = suites(&staff, &assignment.settings).await?;
     let megabytes = assignment.settings.max_bytes as f64 / MIB;
     show(&SettingsPage { frame, slug, assignment, suites, megabytes })
 }

@@ -1,52 +1,105 @@
-//! How a class did, in numbers.
-use crate::{domain::ShortStanding, task::rounded};
-use std::collections::BTreeMap;
+//! How a class did, in numbers, and who is in which part of it.
+use crate::{
+    domain::{CountedSubmission, ShortStanding},
+    task::rounded,
+};
+use std::{cmp::Reverse, collections::BTreeMap};
+
+/// Verdicts in short of work of which nothing ran: unusable, or not built.
+const NEVER_RAN: [&str; 2] = ["US", "CE"];
+
+/// The parts of a class to choose from: names, and words.
+pub(super) const PARTS: [(&str, &str); 6] = [
+    ("accepted", "accepted"),
+    ("wrong", "not accepted"),
+    ("waiting", "not graded yet"),
+    ("never-ran", "never ran"),
+    ("late", "late"),
+    ("missing", "nothing handed in"),
+];
+
+/// Returns whether a student is in a part of the class; everybody is in one that has no name.
+pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
+    let counts = standing.counts.as_ref();
+    let code = counts.and_then(|counts| counts.code.as_deref());
+    match part {
+        "accepted" => code == Some("AC"),
+        "wrong" => code.is_some_and(|code| code != "AC" && !NEVER_RAN.contains(&code)),
+        "waiting" => counts.is_some() && code.is_none(),
+        "never-ran" => code.is_some_and(|code| NEVER_RAN.contains(&code)),
+        "late" => counts.is_some_and(|counts| counts.is_late),
+        "missing" => standing.submissions == 0,
+        _ => true,
+    }
+}
+
+/// Returns the likely mistake in the line about a submission.
+pub(super) fn mistake(counts: &CountedSubmission) -> Option<&str> {
+    counts.summary.split_once("; ").map(|(_, mistake)| mistake)
+}
+
+/// Students with something in common: what that is, their logins, and a submission that shows it.
+pub(super) type SharedBy = (String, Vec<String>, i64);
 
 /// How a class did.
 pub(super) struct Statistics {
     pub(super) students: usize,
-    pub(super) accepted: usize,
-    pub(super) mean: String,
-    pub(super) median: String,
-    /// Mistakes that several students are likely to have made, the most frequent first: their logins, and a submission
-    /// that shows it.
-    pub(super) mistakes: Vec<(String, Vec<String>, i64)>,
+    /// How many are in each of the [`PARTS`]: names, words, numbers.
+    pub(super) parts: Vec<(&'static str, &'static str, usize)>,
+    /// Mean and median of the points of all whose work ran, in percent; nothing where nobody's did.
+    pub(super) points: Option<(String, String)>,
+    /// Mistakes that students are likely to have made, the most frequent first.
+    pub(super) mistakes: Vec<SharedBy>,
+    /// Programs that several students handed in, byte for byte.
+    pub(super) same: Vec<SharedBy>,
 }
 
 impl Statistics {
-    /// Returns the statistics of those who have points; nothing where nobody has.
-    pub(super) fn from_standings(standings: &[ShortStanding]) -> Option<Self> {
-        let mut parts = Vec::new();
-        let mut accepted = 0;
-        let mut mistakes: BTreeMap<String, (Vec<String>, i64)> = BTreeMap::new();
-        for standing in standings {
-            let Some(counts) = &standing.counts else { continue };
-            let Some(verdict) = &counts.verdict else { continue };
-            accepted += usize::from(verdict == "accepted");
-            let number = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-            if let (Some(points), Some(most)) = (number(&counts.points), number(&counts.max_points))
-                && most > 0.0
-            {
-                parts.push((100.0 * points / most).clamp(0.0, 100.0));
-            }
-            if let Some((_, mistake)) = counts.summary.split_once("; ") {
-                let (logins, _) = mistakes.entry(mistake.to_owned()).or_insert_with(|| (Vec::new(), counts.id));
-                logins.push(standing.login.clone());
-            }
+    pub(super) fn from_standings(standings: &[ShortStanding]) -> Self {
+        let count = |part: &str| standings.iter().filter(|one| is_in(one, part)).count();
+        let ran = standings.iter().filter(|one| !is_in(one, "never-ran"));
+        let mut shares: Vec<f64> = ran.filter_map(|one| share(one.counts.as_ref()?)).collect();
+        shares.sort_by(f64::total_cmp);
+        let number = |share: f64| rounded(&share.to_string());
+        let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
+        let mean = |count: usize| shares.iter().sum::<f64>() / count as f64;
+        let points = Some(shares.len()).filter(|count| *count > 0);
+        Self {
+            students: standings.len(),
+            parts: PARTS.map(|(name, words)| (name, words, count(name))).to_vec(),
+            points: points.map(|count| (number(mean(count)), number(middle(count)))),
+            mistakes: shared(standings, mistake),
+            same: shared(standings, |counts| Some(counts.digest.as_str()).filter(|digest| !digest.is_empty()))
+                .into_iter()
+                .filter(|(_, logins, _)| logins.len() > 1)
+                .collect(),
         }
-        parts.sort_by(f64::total_cmp);
-        let students = parts.len();
-        let median = (parts.get(students.checked_sub(1)? / 2)? + parts.get(students / 2)?) / 2.0;
-        let mean = parts.iter().sum::<f64>() / students as f64;
-        let shared = mistakes.into_iter().filter(|(_, (logins, _))| logins.len() > 1);
-        let mut mistakes: Vec<_> = shared.map(|(mistake, (logins, first))| (mistake, logins, first)).collect();
-        mistakes.sort_by_key(|(_, logins, _)| std::cmp::Reverse(logins.len()));
-        Some(Self {
-            students,
-            accepted,
-            mean: rounded(&mean.to_string()),
-            median: rounded(&median.to_string()),
-            mistakes,
-        })
     }
+
+    /// Returns how many students are in a part of the class.
+    pub(super) fn count(&self, part: &str) -> usize {
+        self.parts.iter().find(|(name, ..)| *name == part).map_or(0, |(.., count)| *count)
+    }
+}
+
+/// Returns the share of the points that a submission has, in percent.
+fn share(counts: &CountedSubmission) -> Option<f64> {
+    let number = |text: &Option<String>| text.as_ref()?.parse::<f64>().ok();
+    let (points, most) = (number(&counts.points)?, number(&counts.max_points)?);
+    (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
+}
+
+/// Returns what students have in common, the most frequent first.
+fn shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
+    let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
+    for standing in standings {
+        let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, of(counts)?))) else {
+            continue;
+        };
+        found.entry(name).or_insert_with(|| (Vec::new(), counts.id)).0.push(standing.login.clone());
+    }
+    let mut found: Vec<SharedBy> =
+        found.into_iter().map(|(name, (logins, first))| (name.to_owned(), logins, first)).collect();
+    found.sort_by_key(|(_, logins, _)| Reverse(logins.len()));
+    found
 }

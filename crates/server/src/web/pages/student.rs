@@ -3,19 +3,20 @@ use super::{
     super::{
         api::{RequestWish, cell},
         input::{AddressParts, Fields},
+        upload,
     },
     Page, PageFrame, grades, scenes, see,
     settings::moment,
     show, text,
 };
 use crate::{
-    domain::{Assignment, AttemptChange, Member, MemberLine, Staff, StudentHistory, Submission},
+    domain::{Assignment, Member, MemberLine, Staff, StudentHistory},
     problem::Problem,
 };
 use askama::Template;
-use axum::response::Redirect;
+use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
 #[derive(Template)]
@@ -44,6 +45,8 @@ struct ImportPage {
     slug: String,
     table: String,
     lines: Vec<Line>,
+    /// The columns of which nothing is kept.
+    left_out: BTreeSet<String>,
     is_wrong: bool,
     is_done: bool,
     /// All links as a table, as an address.
@@ -92,16 +95,8 @@ pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, 
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
     let frame = grades::frame(&staff, &assignment).then(address, &work.name);
-    let graded: Vec<(&Submission, i64)> =
-        work.submissions.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result))).collect();
-    let failed = staff.failed_scenes(&graded.iter().map(|(_, result)| *result).collect::<Vec<_>>()).await?;
-    // They come latest first.
-    let change = |pair: &[(&Submission, i64)]| {
-        let [(later, new), (earlier, old)] = *pair else { return None };
-        let change = AttemptChange::between(earlier.number, failed.get(&old)?, failed.get(&new)?);
-        Some((later.id, scenes::change(&change)))
-    };
-    let changes = graded.windows(2).filter_map(change).collect();
+    let changes = staff.changes(&work.submissions).await?;
+    let changes = changes.iter().map(|(id, change)| (*id, scenes::change(change))).collect();
     show(&StudentPage { frame, slug, assignment, work, changes, seen })
 }
 
@@ -128,7 +123,8 @@ async fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bo
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
     let seen = staff.last_event().await?;
     let download = format!("data:text/csv;charset=utf-8,{}", percent(&bytes));
-    show(&ImportPage { frame, slug, table, lines, is_wrong, is_done: is_done && !is_wrong, download, seen })
+    let left_out = lines.iter().flat_map(|line| line.of.unused.clone()).collect();
+    show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
 /// Bytes as part of an address.
@@ -147,11 +143,24 @@ pub(super) async fn import(staff: Staff) -> Page {
     import_page(&staff, String::new(), Vec::new(), false).await
 }
 
-pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTable>) -> Page {
-    let is_meant = form.import.is_some();
-    let lines = staff.import(&form.table, !is_meant, form.seen).await?;
+/// The largest file with a table of members.
+const TABLE: u64 = 1 << 20;
+
+/// Reads a file with a table of members, and shows what it would do.
+pub(super) async fn import_file(staff: Staff, request: Request) -> Page {
+    let received = upload::receive(&staff.app, request, TABLE).await?;
+    let table = String::from_utf8_lossy(&tokio::fs::read(&received.file).await?).into_owned();
+    preview(&staff, table, None, false).await
+}
+
+async fn preview(staff: &Staff, table: String, seen: Option<i64>, is_meant: bool) -> Page {
+    let lines = staff.import(&table, !is_meant, seen).await?;
     let lines = lines.into_iter().map(|one| line(&staff.title, one)).collect();
-    import_page(&staff, form.table, lines, is_meant).await
+    import_page(staff, table, lines, is_meant).await
+}
+
+pub(super) async fn import_table(staff: Staff, Fields(form): Fields<ImportedTable>) -> Page {
+    preview(&staff, form.table, form.seen, form.import.is_some()).await
 }
 
 deeds! {

@@ -3,7 +3,7 @@ use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
     course::OwnWork,
-    scenes, see, show, text,
+    report, scenes, see, show, text,
 };
 use crate::{
     domain::{Assignment, History, Member, Staff, Submission},
@@ -13,9 +13,6 @@ use crate::{
 };
 use askama::Template;
 use axum::{extract::Request, response::Redirect};
-
-/// How much of a report a page shows; the rest is behind its link.
-const SHOWN: usize = 200_000;
 
 #[derive(Template)]
 #[template(path = "assignment.html")]
@@ -40,14 +37,18 @@ struct SubmissionPage {
     history: Vec<History>,
     /// The change that it has made since the one before it.
     change: Option<String>,
-    report: Option<String>,
-    /// The page that is shown: staff's own, where there is one.
+    /// All that its owner handed in, oldest first.
+    attempts: Vec<Submission>,
+    /// The name of the report that is shown: staff's own, where there is one.
     page: Option<&'static str>,
+    /// That report, where it can be part of the page.
+    report: Option<String>,
 }
 
 pub(super) async fn assignment(member: Member, AddressParts { assignment, .. }: AddressParts) -> Page {
     let assignment = member.assignment(&assignment).await?;
-    let frame = PageFrame::assignment(&member, &assignment);
+    let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
+    let frame = PageFrame::assignment(&member, &assignment).then(address, "Hand in");
     let work = OwnWork::read(&member, &assignment).await?;
     show(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }
@@ -68,8 +69,11 @@ async fn find_assignment(member: &Member, submission: &Submission) -> Result<Opt
 
 /// Returns the frame of a submission's pages.
 fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
-    let frame =
-        assignment.map_or_else(|| PageFrame::course(member), |assignment| PageFrame::assignment(member, assignment));
+    let of = |assignment: &Assignment| {
+        let frame = PageFrame::assignment(member, assignment);
+        if member.is_staff { frame.then(format!("/c/{}/a/{}/class", member.slug, assignment.slug), "") } else { frame }
+    };
+    let frame = assignment.map_or_else(|| PageFrame::course(member), of);
     let address = format!("/c/{}/s/{}", member.slug, submission.id);
     frame.then(address, &format!("Submission {}", submission.number))
 }
@@ -77,13 +81,10 @@ fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submissi
 pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressParts) -> Page {
     let submission = member.submission(id).await?;
     let assignment = find_assignment(&member, &submission).await?;
-    let has =
-        |name: &str| submission.grade.as_ref().is_some_and(|grade| grade.files.iter().any(|file| file.name == name));
-    let report = if has("report.txt") {
-        let file = member.report(id, "report.txt").await?;
-        Some(String::from_utf8_lossy(&member.beginning(&file.artifact, SHOWN).await?).into_owned())
-    } else {
-        None
+    let page = page_of(&submission);
+    let report = match page.filter(|_| submission.removed_at.is_none()) {
+        Some(name) => report::read(&member, &member.report(id, name).await?).await?,
+        None => None,
     };
     let is_own = submission.login == member.account.login;
     // Staff may have hidden the assignment again.
@@ -91,14 +92,21 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
         Some(assignment) if is_own && !member.is_staff => Some(OwnWork::read(&member, assignment).await?),
         _ => None,
     };
+    let attempts = match (&work, &assignment) {
+        (Some(work), _) => work.submissions.clone(),
+        (None, Some(_)) => member.attempts(&submission).await?,
+        (None, None) => Vec::new(),
+    };
+    let changes = member.changes(&attempts).await?;
     show(&SubmissionPage {
+        attempts: attempts.into_iter().rev().collect(),
         frame: frame(&member, assignment.as_ref(), &submission),
         is_own,
         work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
-        change: member.change(&submission).await?.as_ref().map(scenes::change),
-        page: page_of(&submission),
+        change: changes.get(&id).map(scenes::change),
+        page,
         report,
         submission,
         member,

@@ -20,7 +20,7 @@ pub(super) fn field(milliseconds: &Option<i64>) -> String {
 /// Returns the points of the most that could be had, to two digits as in reports; a dash where there are none.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
-        (Some(points), Some(most)) => format!("{} / {}", rounded(points), rounded(most)),
+        (Some(points), Some(most)) => format!("{} of {}", rounded(points), rounded(most)),
         (Some(points), None) => rounded(points),
         _ => "\u{2013}".to_owned(),
     }
@@ -112,8 +112,8 @@ mod tests {
     #[test]
     fn points_have_two_digits_at_most() {
         let points = |points: &str, most: &str| super::points(&Some(points.to_owned()), &Some(most.to_owned()));
-        assert_eq!(points("68.08974358974359", "100.0"), "68.09 / 100");
-        assert_eq!(points("0", "7.5"), "0 / 7.5");
+        assert_eq!(points("68.08974358974359", "100.0"), "68.09 of 100");
+        assert_eq!(points("0", "7.5"), "0 of 7.5");
         assert_eq!(super::points(&None, &None), "\u{2013}");
     }
 }

@@ -76,7 +76,8 @@ printf '<script>alert(1)</script> %s by %s, ' "$(basename "$program")" "$(basena
 echo "$points points" >> "$text"
 visibility=visible
 case $scene in Secret/*) visibility=hidden ;; esac
-echo "<script>document.title = document.cookie</script> $points points" > "$html"
+printf '<script>document.title = document.cookie</script><main id="content">\n<h1>Report</h1>\n' > "$html"
+printf '<p>%s points</p></main>\n<footer><p>Written by fosssim-oracle VERSION. </p></footer>' "$points" >> "$html"
 echo "everything $points points" > "$FOSSSIM_STAFF_PAGE"
 if [ $visibility = hidden ]; then
     echo '10.0 points' > "$html"
@@ -84,8 +85,8 @@ if [ $visibility = hidden ]; then
 fi
 cat > "$json" <<END
 {"schema": 4, "version": "1.0", "grades": [{"verdict": "in words", "code": "$code", "points": $points,
- "max_points": 100, "wall_seconds": $$.5, "groups": [{"points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
- {"visibility": "$visibility", "points": $points, "max_points": 90, "scenes": [{"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
+ "max_points": 100, "wall_seconds": $$.5, "groups": [{"name": "Group", "points": 10, "max_points": 10, "scenes": [{"scene": "Group/easy", "code": "AC", "verdict": "accepted", "right_steps": 9}]},
+ {"name": "=More", "visibility": "$visibility", "points": $points, "max_points": 90, "scenes": [{"scene": "${scene:-Group/hard}", "code": "$code", "right_steps": ${right:-$points}, "summary": "a step is wrong"}]}]}]}
 END
 [ "$code" = AC ]
 "#;
@@ -124,7 +125,7 @@ impl Server {
         let grader = folder.with_file_name("grader");
         // Another server in this place may be using it.
         if !grader.exists() {
-            fs::write(&grader, GRADER).expect("a script");
+            fs::write(&grader, GRADER.replace("VERSION", env!("CARGO_PKG_VERSION"))).expect("a script");
             fs::set_permissions(&grader, fs::Permissions::from_mode(0o755)).expect("permissions");
         }
         let database = match &fresh.address {

@@ -173,5 +173,5 @@ async fn own_work_on_a_hidden_assignment_stays(fresh: Fresh) {
     ada.get("/c/physics/a/m1").expect(404);
     ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200);
     let page = ada.get(&format!("/c/physics/s/{id}")).expect(200).text();
-    assert!(page.contains("40 / 100 points") && !page.contains("/c/physics/a/m1"), "{page}");
+    assert!(page.contains("40 of 100 points") && !page.contains("/c/physics/a/m1"), "{page}");
 }

@@ -32,7 +32,7 @@ async fn a_password_signs_in_until_it_is_changed(fresh: Fresh) {
     let admin = server.admin();
     server.course(&admin, "physics");
     let ada = member(&server, &admin, "ada");
-    assert!(server.visitor().get("/sign-in").expect(200).text().contains("With a password"));
+    assert!(server.visitor().get("/sign-in").expect(200).text().contains("Sign in with the password"));
     assert!(ada.get("/account").expect(200).text().contains("New password"));
     for bad in ["short", "123456789", &"x".repeat(201)] {
         assert_eq!(set(&ada, "", bad), 400);
@@ -113,7 +113,7 @@ async fn without_the_option_there_are_none(fresh: Fresh) {
     let admin = server.admin();
     assert_eq!(set(&admin, "", "correct horse"), 403);
     sign_in(&server, "admin", "correct+horse").expect(403);
-    assert!(!server.visitor().get("/sign-in").expect(200).text().contains("With a password"));
+    assert!(!server.visitor().get("/sign-in").expect(200).text().contains("Sign in with the password"));
 }
 
 async fn ways_in_are_counted_by_network_and_bounded(fresh: Fresh) {

@@ -110,7 +110,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     let scores = teacher.get(&format!("{base}/scores")).expect(200).json();
     assert_eq!([&scores[0]["login"], &scores[0]["platform"]], ["ada", "lms"]);
     let page = teacher.get("/c/physics/a/m1/class").expect(200).text();
-    assert!(page.contains("40 / 100") && page.contains("somebody has to look"), "{page}");
+    assert!(page.contains("40 of 100") && page.contains("somebody has to look"), "{page}");
     // Sent once more, it is newer than everything before.
     let before = platform.wait_for("ada", |_| true)["timestamp"].clone();
     teacher.post_form("/c/physics/a/m1/scores", "").expect(303);
@@ -435,7 +435,7 @@ fn platforms_are_reached_by_https_only() {
         put("other", &wish).expect(409);
         wish["issuer"] = json!("https://evil.example");
         put("moodle", &wish).expect(409);
-        let page = admin.get("/admin").expect(200).text();
+        let page = admin.get("/admin/platforms").expect(200).text();
         assert!(page.contains("/lti/login</code>") && page.contains("https://moodle.example.org"), "{page}");
         // Without HTTPS the browser's cookie would not come back from there.
         let answer = server.visitor().get("/lti/login?iss=https%3A%2F%2Fmoodle.example.org&login_hint=x").expect(409);

@@ -71,7 +71,7 @@ async fn a_person_is_removed_by_name_too(fresh: Fresh) {
     let ada = server.member(&admin, "physics", "ada.lovelace", "student");
     let id = ada.submit("physics", &program("WA", 3));
     ada.wait_for_grade("physics", id);
-    assert!(admin.get("/admin").expect(200).text().contains("in all courses"));
+    assert!(admin.get("/admin/people").expect(200).text().contains("in all courses"));
     admin.send("DELETE", "/api/v1/accounts/admin/data", &[], b"").expect(409);
     admin.post_form("/admin/accounts/ada.lovelace/remove", "confirm=ada.lovelace").expect(303);
     ada.get("/api/v1/me").expect(401);

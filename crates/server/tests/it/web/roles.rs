@@ -105,6 +105,7 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("delete", "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}", Staff),
     ("get", "/c/{course}/members/import", Staff),
     ("post", "/c/{course}/members/import", Staff),
+    ("post", "/c/{course}/members/table", Staff),
     ("get", "/c/{course}/a/{assignment}/students/{login}", Staff),
     ("post", "/c/{course}/a/{assignment}/students/{login}/extension", Staff),
     ("post", "/c/{course}/s/{id}/mark", Staff),
@@ -124,6 +125,10 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/account/tokens", People),
     ("post", "/account/tokens/{id}/revoke", People),
     ("get", "/admin", Admins),
+    ("get", "/admin/people", Admins),
+    ("get", "/admin/platforms", Admins),
+    ("get", "/admin/workers", Admins),
+    ("get", "/admin/log", Admins),
     ("post", "/admin/courses", Admins),
     ("post", "/admin/accounts", Admins),
     ("post", "/admin/workers", Admins),
@@ -161,10 +166,12 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("get", "/c/{course}/a/{assignment}/regrades/{id}", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades/{id}/apply", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades/{id}/discard", Staff),
+    ("get", "/c/{course}/s/{id}/beside", Staff),
     ("get", "/c/{course}/s/{id}", Owner),
     ("get", "/check", All),
     ("get", "/static/style.css", All),
     ("get", "/static/page.js", All),
+    ("get", "/static/report.js", All),
 ];
 
 /// The roles of askers.

@@ -1,7 +1,7 @@
 //! Teaching by hand: a class by a table, more time, other points, an answer.
 use crate::support::{
     engines::{Fresh, on_both_engines},
-    server::{JSON, Server, program},
+    server::{Client, JSON, Server, program},
 };
 use std::time::{Duration, SystemTime};
 
@@ -39,6 +39,13 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let link = page.split("<code>").nth(1).and_then(|rest| rest.split('<').next()).expect("a link");
     let ada = server.visitor().welcome(link.rsplit('/').next().expect("a secret"));
     assert_eq!(ada.get("/api/v1/me").expect(200).json()["login"], "ada");
+    // A file does what the form does: it is looked at first, and columns that are not kept are named.
+    let file = "--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"class.csv\"\r\n\r\n\
+                Login,Name,Matriculation\ndora,Dora,4711\n\r\n--b--\r\n";
+    let form = [("Content-Type", "multipart/form-data; boundary=b")];
+    let page = teacher.send("POST", "/c/physics/members/table", &form, file.as_bytes()).expect(200).text();
+    assert!(page.contains("not used: Matriculation.") && page.contains("dora,Dora,4711"), "{page}");
+    assert_eq!(members(), 4);
     // A name that a spreadsheet would take for a formula is text.
     let page =
         teacher.post_form("/c/physics/members/import", "table=%3D1%2B1,mallory%0A&import=yes").expect(200).text();
@@ -77,9 +84,9 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     teacher.post_form(&format!("/c/physics/s/{}/mark", ids[1]), "points=68%2C5&comment=You+are+right").expect(303);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "68.5");
     let page = ada.get(&format!("/c/physics/s/{}", ids[1])).expect(200).text();
-    assert!(page.contains("68.5 / 100 points") && page.contains("You are right"), "{page}");
+    assert!(page.contains("68.5 of 100 points") && page.contains("You are right"), "{page}");
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
-    assert!(class.contains("68.5 / 100") && !class.contains("odd"), "{class}");
+    assert!(class.contains("68.5 of 100") && !class.contains("odd"), "{class}");
     assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",68.5,"));
     // A class is searched, and sorted.
     let eve_handed_in = eve.submit("physics", &program("WA", 90));
@@ -91,6 +98,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     );
     let class = teacher.get("/c/physics/a/m1/class?sort=points&page=7").expect(200).text();
     assert!(class.find("students/eve") < class.find("students/ada"), "{class}");
+    check_parts(&server, &admin, &teacher);
     // The scenes that students have wrong.
     let class = teacher.get("/c/physics/a/m1/class").expect(200).text();
     assert!(class.contains(">Group/hard</th><td class=\"num\">2</td><td class=\"words\">ada, eve</td>"), "{class}");
@@ -100,9 +108,9 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     let words = "Since submission 1 became right: Group/hard.";
     assert!(eve.get(&format!("/c/physics/s/{mended}")).expect(200).text().contains(words));
     assert!(teacher.get("/c/physics/a/m1/students/eve").expect(200).text().contains(words));
+    check_beside(&teacher, [eve_handed_in, ids[0], mended]);
     let page = teacher.get("/c/physics/a/m1/students/ada").expect(200).text();
-    assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 / 100"), "{page}");
-    teacher.get("/c/physics/a/m1/students/nobody").expect(404);
+    assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 of 100"), "{page}");
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "after all"}"#).expect(200);
     assert_eq!(ada.get(&place(ids[1])).expect(200).json()["grade"]["points"], "30");
     // Both stand in the history, and a comment alone changes no grade.
@@ -130,6 +138,31 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);
 }
 
+/// The list of the class shows a part of it, and those who make a mistake.
+fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
+    server.member(admin, "physics", "carl", "student");
+    for (part, shown) in [("missing", "carl"), ("wrong", "eve"), ("late", ""), ("accepted", "")] {
+        let class = teacher.get(&format!("/c/physics/a/m1/class?part={part}")).expect(200).text();
+        for login in ["ada", "carl", "eve"] {
+            let is_shown = class.contains(&format!("<span class=\"names\">{login}</span>"));
+            assert_eq!(is_shown, login == shown || part == "wrong" && login == "ada", "{part} {login}: {class}");
+        }
+    }
+    assert!(teacher.get("/c/physics/a/m1/class?mistake=none").expect(200).text().contains("Nobody is like that"));
+}
+
+/// Two submissions stand beside each other, by number or by login.
+fn check_beside(teacher: &Client, [one, other, mended]: [i64; 3]) {
+    for with in [other.to_string(), "ada".to_owned()] {
+        let page = teacher.get(&format!("/c/physics/s/{one}/beside?with={with}")).expect(200).text();
+        assert!(page.contains("Both have the same scenes right") && page.contains("of 100"), "{page}");
+    }
+    teacher.get(&format!("/c/physics/s/{one}/beside?with=carl")).expect(404);
+    teacher.get("/c/physics/a/m1/students/nobody").expect(404);
+    let page = teacher.get(&format!("/c/physics/s/{mended}/beside?with={one}")).expect(200).text();
+    assert!(page.contains("1 scene differs") && page.contains("#scene=Group%2Fhard"), "{page}");
+}
+
 async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     let mut server = Server::start(&fresh, &["--workers", "1"]);
     let admin = server.admin();
@@ -153,8 +186,8 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     assert_eq!(seen()["late"], serde_json::json!({"days": 2, "percent": 20}));
     assert_eq!(seen()["grade"]["points"], "76");
     let page = ada.get(&format!("/c/physics/s/{id}")).expect(200).text();
-    assert!(page.contains("76 / 100 points") && page.contains("2 days late, which takes 20 %"), "{page}");
-    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("76 / 100"), "staff sees the same");
+    assert!(page.contains("76 of 100 points") && page.contains("2 days late, which takes 20 %"), "{page}");
+    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("76 of 100"), "staff sees the same");
     assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",76,"));
     // More time for one makes it early, and points by hand cost nothing.
     let extension = "/api/v1/courses/physics/assignments/m1/extensions/ada";

@@ -66,6 +66,7 @@ const BACK_TO_THE_FIRST: &[&str] = &[
     "ALTER TABLE account DROP COLUMN managed_by",
     "ALTER TABLE assignment DROP COLUMN published_at",
     "ALTER TABLE result DROP COLUMN shown",
+    "ALTER TABLE result DROP COLUMN parts",
     "DROP TABLE session",
     "DROP TABLE token",
     "DROP TABLE sign_in_link",

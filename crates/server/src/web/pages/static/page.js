@@ -19,10 +19,25 @@ if (state && state.dataset.follow) {
   };
   setInterval(look, 2000);
 }
-// Files can be dropped on the form.
+// What needs a script is there with one.
+for (const hidden of document.querySelectorAll("[data-script], [data-copy]")) hidden.hidden = false;
+for (const button of document.querySelectorAll("[data-copy]")) {
+  button.addEventListener("click", () => {
+    const field = document.createElement("textarea");
+    field.value = button.dataset.copy;
+    button.after(field);
+    field.select();
+    document.execCommand("copy");
+    field.remove();
+    button.textContent = "Copied";
+  });
+}
+// Files can be dropped on the form, which says how much has gone.
 const form = document.querySelector("form[data-drop]");
 if (form) {
   const field = form.querySelector("input[type=file]");
+  const button = form.querySelector("button");
+  const sent = form.querySelector("[data-sent]");
   addEventListener("dragover", (event) => {
     event.preventDefault();
     form.classList.add("over");
@@ -33,9 +48,41 @@ if (form) {
     form.classList.remove("over");
     if (event.dataTransfer.files.length > 0) field.files = event.dataTransfer.files;
   });
-  // A double click hands in once.
-  form.addEventListener("submit", () => {
-    form.querySelector("button").disabled = true;
+  form.addEventListener("submit", (event) => {
+    event.preventDefault();
+    // A double click hands in once.
+    button.disabled = true;
+    sent.hidden = false;
+    sent.removeAttribute("class");
+    const bar = document.createElement("progress");
+    const say = (words) => sent.replaceChildren(words, document.createElement("br"), bar);
+    const stop = (words) => {
+      sent.className = "bad";
+      sent.textContent = words;
+      button.disabled = false;
+    };
+    const request = new XMLHttpRequest();
+    request.upload.addEventListener("progress", ({ loaded, total }) => {
+      bar.max = total;
+      bar.value = loaded;
+      say(loaded < total ? `${Math.floor((100 * loaded) / total)} % sent` : "All is sent. The server looks at it.");
+    });
+    request.addEventListener("load", () => {
+      if (request.status < 400) {
+        location.href = request.responseURL;
+        return;
+      }
+      // A refusal is a page that says why, and what to do.
+      const page = new DOMParser().parseFromString(request.responseText, "text/html");
+      const words = [...page.querySelectorAll("main h1, main p")].map((part) => part.textContent.trim());
+      stop(words.join(" ") || `The server answered ${request.status}.`);
+    });
+    request.addEventListener("error", () =>
+      stop("The connection broke off. Hand in again: the same upload counts once."),
+    );
+    request.open("POST", form.action);
+    request.send(new FormData(form));
+    say("0 % sent");
   });
 }
 // Times in the reader's own zone.
