@@ -100,7 +100,7 @@ CREATE TRIGGER report_goes AFTER DELETE ON result_file REFERENCING OLD TABLE AS 
     FOR EACH STATEMENT EXECUTE FUNCTION count_reports();
 -- end
 
--- Retention finds what is too old, and asks of each artifact whether something names it.
+-- Retention finds what is too old, and asks of each artefact whether something names it.
 CREATE INDEX submission_age ON submission (created_at, id) WHERE removed_at IS NULL;
 CREATE INDEX submission_digest ON submission (digest) WHERE removed_at IS NULL;
 CREATE INDEX job_file_digest ON job_file (digest);
