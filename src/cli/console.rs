@@ -55,7 +55,18 @@ pub(super) fn style() -> Style {
         ColorChoice::Auto if is_set("CLICOLOR_FORCE") && !is("CLICOLOR_FORCE", "0") => true,
         ColorChoice::Auto => io::stdout().is_terminal() && !is("TERM", "dumb") && !is("CLICOLOR", "0"),
     };
-    if wanted { Style::Color } else { Style::Plain }
+    match (wanted, io::stdout().is_terminal() && shows_signs()) {
+        (false, _) => Style::Plain,
+        (true, false) => Style::Color,
+        (true, true) => Style::ColorAndSigns,
+    }
+}
+
+/// Returns whether the locale's characters are UTF-8: of these variables the first that is set decides.
+fn shows_signs() -> bool {
+    let set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(|name| std::env::var(name).ok());
+    let name = set.filter(|value| !value.is_empty()).next().unwrap_or_default().to_lowercase();
+    name.contains("utf-8") || name.contains("utf8")
 }
 
 /// Narrower than this no line is wrapped: a terminal that says so has not been told its size.
@@ -145,7 +156,7 @@ pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> Prog
     bar
 }
 
-/// How long a command may take before a bar appears.
+/// The longest time that a command may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
 /// How often a bar moves by itself.

@@ -66,18 +66,18 @@ impl Diagnosis {
                 match (likely, common.is_unexplained()) {
                     (_, true) => "What is wrong in most",
                     (1, _) => "Likely cause of most",
-                    _ => "Likely cause of the others, or of the same ones together with it",
+                    _ => "Likely cause of the others, or a second cause of the same ones",
                 }
             };
             let heading = format!("{most} ({explained} of {})", counted(wrong as u64, "wrong trace"));
             let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
-            text += &indented(std::slice::from_ref(common));
+            text += &indented(std::slice::from_ref(common), style);
             text.push('\n');
         }
         for case in &self.cases {
             let _ = writeln!(text, "{}", head(case, style));
             for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
-                text += &indented(std::slice::from_ref(other));
+                text += &indented(std::slice::from_ref(other), style);
             }
         }
         text + &smallest
@@ -127,13 +127,13 @@ fn alone(case: &Case, style: Style) -> String {
                  state, so nothing before it is to blame.\n";
     } else {
         text.push('\n');
-        text += &indented(explanations);
+        text += &indented(explanations, style);
     }
     text
 }
 
-fn indented(explanations: &[Explanation]) -> String {
-    lines(explanations).iter().map(|line| format!("  {line}\n")).collect()
+fn indented(explanations: &[Explanation], style: Style) -> String {
+    lines(explanations, style).iter().map(|line| format!("  {line}\n")).collect()
 }
 
 view! {
@@ -169,7 +169,7 @@ view! {
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept it.
         accepted: bool = case.accepted,
-        /// How the program ended, where it did not end well.
+        /// The way the program ended, where it did not end well.
         note: Option<&'a str> = case.note.as_deref(),
         /// The first thing that is wrong; null where nothing is, and where it may not be told.
         first_divergence: Option<FindingView> = match &case.first {

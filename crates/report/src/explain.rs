@@ -4,6 +4,7 @@
 //! as numbers only.
 use super::{
     number::{counted, exact},
+    style::Style,
     view::{key, view},
     words::explanation::{details, known, place, what},
 };
@@ -14,8 +15,8 @@ const LISTED: usize = 3;
 
 /// Returns the lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
 #[must_use]
-pub fn lines(explanations: &[Explanation]) -> Vec<String> {
-    explanations.iter().flat_map(explanation_lines).collect()
+pub fn lines(explanations: &[Explanation], style: Style) -> Vec<String> {
+    explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
 }
 
 /// Returns the sentence about the likeliest mistake, or about those that explain everything together, for formats with
@@ -50,8 +51,9 @@ pub(crate) struct ExplanationParts {
     pub(crate) example: Vec<String>,
 }
 
-impl From<&Explanation> for ExplanationParts {
-    fn from(explanation: &Explanation) -> Self {
+impl ExplanationParts {
+    /// Returns the parts, with formulas as the style writes them.
+    pub(crate) fn new(explanation: &Explanation, style: Style) -> Self {
         let Explanation { reproduced, samples, about, .. } = explanation;
         // An explanation that reproduces nothing is an observation, not a mistake that is likely.
         let (is_likely, evidence) = match (about, *reproduced) {
@@ -61,17 +63,17 @@ impl From<&Explanation> for ExplanationParts {
             (About::Mistake, _) => (true, Some(format!("reproduces {reproduced} of {samples} wrong steps"))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
-        let mut details = details(explanation);
+        let mut details: Vec<String> = details(explanation).iter().map(|line| style.set(line)).collect();
         if !explanation.is_unfinished() {
             details.extend(others(&explanation.same_as));
         }
-        let example = explanation.example.as_ref().map(example_lines).unwrap_or_default();
+        let example = explanation.example.as_ref().map(|example| example_lines(example, style)).unwrap_or_default();
         Self { is_likely, what: what(explanation), evidence, details, example }
     }
 }
 
-fn explanation_lines(explanation: &Explanation) -> Vec<String> {
-    let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::from(explanation);
+fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
+    let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::new(explanation, style);
     let likely = if is_likely { "likely mistake: " } else { "" };
     let evidence = evidence.map_or_else(String::new, |evidence| format!(" ({evidence})"));
     let mut lines = vec![format!("{likely}{what}{evidence}")];
@@ -98,9 +100,10 @@ fn listed(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 
-fn example_lines(example: &Example) -> Vec<String> {
+fn example_lines(example: &Example, style: Style) -> Vec<String> {
+    let given = example.given.iter();
     let given: Vec<String> =
-        example.given.iter().map(|given| format!("{} = {}", key(&given.input), vector(&given.value))).collect();
+        given.map(|given| format!("{} = {}", style.set(&key(&given.input)), vector(&given.value))).collect();
     let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));
@@ -227,7 +230,7 @@ pub(crate) mod tests {
 
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
-        insta::assert_snapshot!(lines(&explanations()).join("\n"), @r"
+        insta::assert_snapshot!(lines(&explanations(), Style::Plain).join("\n"), @r"
         likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           Can't be told apart here from 5 other formulas
@@ -245,7 +248,7 @@ pub(crate) mod tests {
             sentence(&explanations()[1..]).as_deref(),
             Some("No simple mistake explains the polynomial: particle-edge overlap.")
         );
-        assert_eq!((lines(&[]), sentence(&[])), (Vec::new(), None));
+        assert_eq!((lines(&[], Style::Plain), sentence(&[])), (Vec::new(), None));
         let known = |key: &str| {
             let key = key.to_owned();
             Explanation { key, reproduced: 5, samples: 5, ..explanations().swap_remove(0) }
@@ -275,12 +278,12 @@ pub(crate) mod tests {
 
     #[test]
     fn hints_decide_what_is_there_to_be_shown() {
-        let told = |hints: Hints| lines(&cut(hints, explanations()));
+        let told = |hints: Hints| lines(&cut(hints, explanations()), Style::Plain);
         assert!(told(Hints::Where).is_empty());
         let what = told(Hints::What);
         assert_eq!(what.len(), 2);
         assert!(!what.join("\n").contains("weight") && !what.join("\n").contains("0.125"), "{what:?}");
-        assert_eq!(told(Hints::Full), lines(&explanations()));
+        assert_eq!(told(Hints::Full), lines(&explanations(), Style::Plain));
     }
 
     #[test]

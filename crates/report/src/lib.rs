@@ -22,6 +22,7 @@ pub mod diagnosis;
 pub mod explain;
 pub mod foreign;
 pub mod formats;
+pub mod formula;
 pub mod grade;
 pub mod number;
 pub mod page;

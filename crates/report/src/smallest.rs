@@ -24,7 +24,7 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
     let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
     let mut parts = vec![heading(&title(small))];
-    parts[0].extend(causes(small).iter().map(|line| format!("  {line}\n")));
+    parts[0].extend(causes(small, style).iter().map(|line| format!("  {line}\n")));
     parts.push(small.xml.clone());
     parts.extend(small.differs.clone());
     parts.extend(small.by_hand.iter().map(|by_hand| format!("{}{}", heading("By hand"), by_hand.text)));
@@ -34,9 +34,9 @@ pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
 }
 
 /// Returns why the program is wrong on it, a line each.
-fn causes(small: &SmallestScene) -> Vec<String> {
+fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
     let SmallestScene { note, first, explanations, .. } = small;
-    let told = lines(&explanations[..explanations.len().min(1)]);
+    let told = lines(&explanations[..explanations.len().min(1)], style);
     let first = first.as_ref().filter(|_| told.is_empty()).map(first_divergence);
     note.iter().cloned().chain(first).chain(told).collect()
 }
@@ -70,7 +70,7 @@ view! {
         runs: u32 = small.runs,
         /// Whether no single attempt makes it smaller; false where the search was stopped.
         minimal: bool = small.is_minimal,
-        /// How the program ended, where it did not end well.
+        /// The way the program ended, where it did not end well.
         note: Option<String> = small.note.as_deref().map(plain),
         /// The first thing that is wrong; null where nothing is, and where it may not be told.
         first_divergence: Option<FindingView> = match &small.first {

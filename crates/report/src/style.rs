@@ -1,4 +1,5 @@
-//! Decoration for terminals: colors on top of text that makes sense without them.
+//! Decoration for terminals: colors and signs on top of text that makes sense without them.
+use crate::formula;
 
 /// Whether a report is decorated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -8,6 +9,8 @@ pub enum Style {
     Plain,
     /// Color codes, for terminals.
     Color,
+    /// Color codes, and formulas with Unicode's signs, for terminals that show these.
+    ColorAndSigns,
 }
 
 /// The look of a piece of text.
@@ -31,12 +34,17 @@ impl Style {
     pub fn paint(self, look: Look, text: &str) -> String {
         let code = match (self, look) {
             (Self::Plain, _) => return text.to_owned(),
-            (Self::Color, Look::Good) => "1;32",
-            (Self::Color, Look::Bad) => "1;31",
-            (Self::Color, Look::Notice) => "33",
-            (Self::Color, Look::Strong) => "1",
-            (Self::Color, Look::Faint) => "2",
+            (_, Look::Good) => "1;32",
+            (_, Look::Bad) => "1;31",
+            (_, Look::Notice) => "33",
+            (_, Look::Strong) => "1",
+            (_, Look::Faint) => "2",
         };
         format!("\x1b[{code}m{text}\x1b[0m")
+    }
+
+    /// Returns the line with its formulas as this style writes them.
+    pub(crate) fn set(self, line: &str) -> String {
+        if self == Self::ColorAndSigns { formula::with_signs(line) } else { line.to_owned() }
     }
 }

@@ -29,6 +29,7 @@ use crate::{
         grade,
         number::counted,
         page::Audience,
+        style::Style,
         words,
     },
     sandbox::Backend,
@@ -192,11 +193,11 @@ impl GradingSession<'_> {
         if let Some(folder) = &self.folder {
             if taken > 0 {
                 let (folder, all) = (folder.display(), counted(all as u64, "result"));
-                console::complain(format!("{taken} of {all} taken over from {folder} (--fresh grades all anew)\n"));
+                console::complain(format!("{taken} of {all} taken over from {folder} (--fresh grades all again)\n"));
             }
             if self.cancellation.is_cancelled() {
                 let folder = folder.display();
-                let line = format!("stopped; results are kept in {folder}: the same command goes on from there\n");
+                let line = format!("stopped; results are kept in {folder}: the same command continues from there\n");
                 console::complain(&line);
             }
         }
@@ -384,7 +385,9 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     for scene in grade.scenes().filter(|scene| !never_ran(scene.verdict)) {
         text += &format!("\n=== {} ===\n{}: {}\n", plain(&scene.scene), scene.verdict, plain(&words::summary(scene)));
         let details = grade::difference(scene).into_iter().chain(words::details(scene));
-        text.extend(details.chain(explain::lines(&scene.settled)).map(|line| format!("{}\n", plain(&line))));
+        text.extend(
+            details.chain(explain::lines(&scene.settled, Style::Plain)).map(|line| format!("{}\n", plain(&line))),
+        );
         for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {
             if !printed_there.trim().is_empty() {
                 text += &format!("--- standard {stream} ---\n{}\n", printed(printed_there));

@@ -84,7 +84,7 @@ fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let has_example = check.tables || first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
-    let mut lines = explain::lines(&shown);
+    let mut lines = explain::lines(&shown, style);
     if !more.is_empty() {
         lines.push(format!("and {} (--tables)", counted(more.len() as u64, "less likely explanation")));
     }

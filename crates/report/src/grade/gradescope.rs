@@ -1,7 +1,7 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
 use super::{super::explain, difference, head_lines, points, see_above, speed_words};
 use crate::foreign::{plain, printed};
-use crate::{number::counted, view::document, words};
+use crate::{number::counted, style::Style, view::document, words};
 use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
     speed::{SpeedGrade, SpeedSource},
@@ -116,7 +116,7 @@ fn overall(grade: &Grade) -> String {
         Some(_) if !all_visible => "Graded.".to_owned(),
         Some(reached) => format!("{}: {} of {} points.", grade.verdict, points(reached), points(grade.max_points)),
         None if grade.is_our_fault() => {
-            "The grader failed; this is not your fault and costs nothing. Staff has to look at it.".to_owned()
+            "The grader failed; this is not your fault and costs no points. Staff must look at it.".to_owned()
         }
         None => out_of_time(grade),
     }];
@@ -158,7 +158,7 @@ fn output(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, plain(&words::summary(scene)))];
     lines.extend(difference(scene));
     lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
-    lines.extend(explain::lines(&scene.settled).iter().map(|line| plain(line)));
+    lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's standard error:\n{}", printed(&scene.stderr)));
     }

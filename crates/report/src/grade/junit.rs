@@ -1,7 +1,7 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
 use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, wrong_first};
 use crate::foreign::{plain, printed};
-use crate::words;
+use crate::{style::Style, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
@@ -69,7 +69,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             status.set_type(verdict.name());
             status.set_message(plain(&words::summary(scene)));
             let mut description = words::details(scene);
-            description.extend(explain::lines(&scene.settled));
+            description.extend(explain::lines(&scene.settled, Style::Plain));
             if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), printed(&build.output)]);
             }

@@ -2,7 +2,7 @@
 //! program that can be run, which charge no attempt.
 use super::{super::explain, difference, head_lines, score, see_above, speed_words};
 use crate::foreign::{one_line, plain, printed};
-use crate::{view::document, words};
+use crate::{style::Style, view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
@@ -125,7 +125,7 @@ pub(crate) fn render(grade: &Grade) -> String {
 fn output(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = difference(scene).into_iter().collect();
     lines.extend(words::details(scene));
-    lines.extend(explain::lines(&scene.settled));
+    lines.extend(explain::lines(&scene.settled, Style::Plain));
     lines.join("\n")
 }
 

@@ -181,7 +181,7 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
             };
             let _ = writeln!(
                 out,
-                "<tr{class}><th scope=\"row\">{}</th><td>t^{power}</td><td class=\"num exact\">{right}</td>\
+                "<tr{class}><th scope=\"row\">{}</th><td>t<sup>{power}</sup></td><td class=\"num exact\">{right}</td>\
                  <td class=\"num exact\">{yours}</td><td>{word}</td></tr>",
                 text(&curve.role.to_string()),
             );

@@ -1,7 +1,7 @@
 //! One judged trace on a page.
 use super::{
     Case, call, data, document,
-    markup::{self, compared, text},
+    markup::{self, compared, formula, text},
     packed::Precision,
     script, strip,
 };
@@ -16,7 +16,7 @@ use crate::{
     describe::pair_key,
     explain::ExplanationParts,
     number::count,
-    style::Look,
+    style::{Look, Style},
 };
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
 use fosssim_findings::{Finding, FindingDetail, Hints};
@@ -124,7 +124,7 @@ impl Case<'_> {
         let words = if what.equal {
             "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
         } else {
-            "The reference with exactly the likely mistake writes another trace: look at its motion beside yours."
+            "The reference with exactly the likely mistake writes another trace: compare its motion with yours."
         };
         format!("<p class=\"hint\">{words}</p>\n")
     }
@@ -168,7 +168,8 @@ impl Case<'_> {
             let _ = write!(
                 out,
                 "<details class=\"table\"><summary>Polynomials that follow from wrong positions</summary>\n\
-                 <p>Their formulas are right: they look at where the responses or the failsafe before them led.</p>\n{}</details>\n",
+                 <p>Their formulas are right, but the responses or the failsafe before them gave wrong \
+                     positions.</p>\n{}</details>\n",
                 some(&follow, depth, false)
             );
         }
@@ -277,7 +278,8 @@ fn some(calls: &[(u32, &InspectedCall)], depth: usize, open: bool) -> String {
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
     let mut out = String::new();
     for one in explanations {
-        let ExplanationParts { is_likely, what, evidence, details, example } = ExplanationParts::from(one);
+        let ExplanationParts { is_likely, what, evidence, details, example } =
+            ExplanationParts::new(one, Style::ColorAndSigns);
         out += "<section class=\"card mistake\">";
         if is_likely {
             out += "<p class=\"label\">Likely mistake</p>";
@@ -287,7 +289,7 @@ pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> S
         let dot = if more.is_empty() { "" } else { "." };
         let _ = write!(out, "<p class=\"lead\">{}{dot}</p>", text(lead));
         out.extend((!more.is_empty()).then(|| format!("<p>{}</p>", text(more))));
-        out.extend(details.iter().map(|line| format!("<p>{}</p>", text(line))));
+        out.extend(details.iter().map(|line| format!("<p>{}</p>", formula(line))));
         out.extend(evidence.map(|evidence| format!("<p class=\"hint\">{}</p>", text(&evidence))));
         if !example.is_empty() && !is_shown_beside {
             let _ = write!(

@@ -43,6 +43,12 @@ pub(super) fn note(note: Option<&CourseNote>) -> String {
     format!(" <span class=\"hint\">The course: {}.</span> ", parts.join("; "))
 }
 
+/// Returns a line with its formulas set: Unicode's signs, and the index of a letter below it.
+pub(super) fn formula(line: &str) -> String {
+    let set = |line: String, index| line.replace(&format!("_{index}"), &format!("<sub>{index}</sub>"));
+    ["cm", "a", "b", "i"].into_iter().fold(text(line), set)
+}
+
 /// Writes JSON as it may stand in a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")

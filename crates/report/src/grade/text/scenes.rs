@@ -124,7 +124,7 @@ impl<'a> Scenes<'a, '_> {
         if scene.verdict != Verdict::Unwritten {
             lines.extend(words::details(scene).iter().map(|line| one_line(line)));
         }
-        lines.extend(explain::lines(&scene.settled).iter().map(|line| one_line(line)));
+        lines.extend(explain::lines(&scene.settled, self.options.style).iter().map(|line| one_line(line)));
         if let [first, alike @ ..] = self.alike(scene)
             && *first == scene.scene
             && !alike.is_empty()
