@@ -81,7 +81,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                 // First of all: whatever follows could wait, too.
                 thread::spawn(end_when_nothing_moves);
                 signalled.cancel();
-                screen::write_above_bars(b"\nstopping (once more to stop at once)\n");
+                screen::write_above_bars(b"\nstopping (once more to stop immediately)\n");
             }));
             cancellation
         })

@@ -145,7 +145,7 @@ test("a trace that is cut, one of another scene, a text, an empty file: each has
   await page.locator("#scene").selectOption("GeometricTests/pair-becomes-rigid");
   await page.waitForFunction(() => document.documentElement.dataset.checked === "2");
   await drop(page, join(folder, "other.bin"));
-  assert.match(await report(page).locator("main").innerText(), /Is this trace of this scene\?/);
+  assert.match(await report(page).locator("main").innerText(), /Does this trace belong to this scene\?/);
   for (const [content, words] of [
     ["Dear grader", /looks like text/],
     ["", /is empty/],

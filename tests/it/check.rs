@@ -228,7 +228,7 @@ fn every_cut_ends_with_a_report() {
         let json: Value = serde_json::from_slice(&run.stdout).unwrap_or_else(|_| panic!("{length}: {}", run.shown()));
         let placed = json["problem"]["offset"].is_u64() || json["damage"]["offset"].is_u64();
         // One length is that of a trace of states alone, which a remark tells.
-        let only_remark = run.err().is_empty() || run.err().contains("positions and velocities only");
+        let only_remark = run.err().is_empty() || run.err().contains("only positions and velocities");
         assert!(placed && only_remark, "{length}: {}", run.shown());
     }
 }
@@ -333,7 +333,10 @@ fn another_scenes_trace_is_asked_about_and_not_explained() {
         let (text, json) = reports(BEAM, &trace);
         let out = text.out();
         let first = out.lines().next().unwrap_or_default();
-        assert!(first.ends_with("its length.") == longer && first.contains("Is this trace of this scene?"), "{first}");
+        assert!(
+            first.ends_with("its length.") == longer && first.contains("Does this trace belong to this scene?"),
+            "{first}"
+        );
         for blame in ["likely mistake", "First difference", "Where to look", "Likely cause"] {
             assert!(!out.contains(blame), "{blame} in\n{out}");
         }

@@ -425,7 +425,7 @@ fn the_demo_ends_well() {
     let sample = env!("CARGO_BIN_EXE_fosssim-sample");
     let run = workspace.run(["demo", "--sample", sample]);
     assert_eq!(run.code, Some(0), "{}", run.shown());
-    assert!(run.out().ends_with("to look at in a browser: fosssim-demo.html\n"), "{}", run.out());
+    assert!(run.out().ends_with("for a browser: fosssim-demo.html\n"), "{}", run.out());
     let page = String::from_utf8(workspace.read("fosssim-demo.html")).expect("text");
     assert!(
         page.contains("Likely mistake") && page.contains("data-scene=") && page.len() < 3_000_000,

@@ -136,7 +136,7 @@ fn a_grading_against_recordings_has_its_motions() {
     assert!(body.contains("id=\"reference-") && body.contains("id=\"submission-"), "no motion");
     assert!(body.contains("The verdict compares with the recording"), "{body}");
     // One step is wrong by itself, although the recorded run is another one from there on.
-    assert!(body.contains(" 1 wrong by themselves, 9 right but starting from where a wrong step has led"), "{body}");
+    assert!(body.contains(" 1 wrong by themselves, 9 right but starting from a wrong state"), "{body}");
     assert!(body.contains("Likely mistake"), "{body}");
 }
 

@@ -1,4 +1,4 @@
-// One pair under the glass: what the reference computes for it, redrawn while it is changed.
+// One pair: what the reference computes for it, redrawn while it is changed.
 const PAIRS = {
   pe: {
     points: [

@@ -7,13 +7,13 @@ use std::{
     sync::OnceLock,
 };
 
-/// How many bytes the browser is asked for at once: each call takes some 0.1 ms.
+/// The number of bytes that the browser is asked for at once: each call takes some 0.1 ms.
 const PIECE: usize = 1 << 20;
 
 /// The first bytes of every zstd frame.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Why a file can't be read to its end, and what to do.
+/// The reason why a file can't be read to its end, and what to do.
 pub(crate) type ReadFault = OnceLock<&'static str>;
 
 /// The page, as far as requests need it.
@@ -60,7 +60,7 @@ impl Read for DroppedFile<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let Some(count) = self.host.read(self.file, self.offset, into) else {
             let _ = self.fault.set("it has changed or is gone; drop it again");
-            return Err(io::Error::other("the browser can't read the file any more"));
+            return Err(io::Error::other("the browser can no longer read the file"));
         };
         self.offset += count as u64;
         Ok(count)

@@ -12,7 +12,7 @@
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
-/// How a run ended. Every variant but [`RunEnd::Exited`] and [`RunEnd::Signalled`] is a decision of the sandbox.
+/// The way a run ended. Every variant but [`RunEnd::Exited`] and [`RunEnd::Signalled`] is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RunEnd {
     /// The program ended by itself with this exit code.
@@ -85,11 +85,11 @@ impl fmt::Display for RunEnd {
 pub fn signal_name(signal: i32) -> &'static str {
     match signal {
         11 => "SIGSEGV: it used memory that is not its own",
-        6 => "SIGABRT: it gave up, by a failed assertion or an uncaught exception",
+        6 => "SIGABRT: it aborted, by a failed assertion or an uncaught exception",
         8 => "SIGFPE: an integer division by zero",
         4 => "SIGILL: an instruction that this processor does not have",
-        7 => "SIGBUS: it used memory that is not there",
-        13 => "SIGPIPE: it wrote where nobody reads",
+        7 => "SIGBUS: it used memory that does not exist",
+        13 => "SIGPIPE: it wrote to a pipe without a reader",
         5 => "SIGTRAP: a breakpoint",
         15 => "SIGTERM: it ended itself",
         9 => "SIGKILL: killed by itself or by the system",

@@ -13,7 +13,7 @@ pub struct InspectedPair {
     pub step: InspectedStep,
     /// Where the step ended.
     pub end: State,
-    /// Why it has no result.
+    /// The reason why it has no result.
     pub failed: Option<StepError>,
 }
 

@@ -24,7 +24,7 @@ pub struct InspectedPass {
     pub pass: Pass,
     /// Positions at the end of the step as the pass sees them.
     pub q_end: Vec<f64>,
-    /// How many pairs it looks at.
+    /// The number of pairs that it looks at.
     pub calls: usize,
     /// The collisions that it finds.
     pub hits: Vec<Impulse>,
@@ -67,7 +67,7 @@ pub struct InspectedCall {
     pub pair: Pair,
     /// The reference's own computation of it.
     pub study: Result<Study, NoAnswer>,
-    /// How many polynomials the reference logs for it; none without continuous-time detection.
+    /// The number of polynomials that the reference logs for it; none without continuous-time detection.
     pub polynomials: usize,
     /// The trace's log of it.
     pub logged: CallLog,
@@ -84,9 +84,9 @@ pub struct InspectedStep {
     pub expected_end: Option<State>,
     /// The reference's detection passes, the first ones.
     pub passes: Vec<InspectedPass>,
-    /// How many passes the reference makes.
+    /// The number of passes that the reference makes.
     pub expected_passes: usize,
-    /// How many polynomials the reference logs.
+    /// The number of polynomials that the reference logs.
     pub expected_polynomials: usize,
     /// How many the trace has logged.
     pub actual_polynomials: usize,

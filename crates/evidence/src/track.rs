@@ -49,7 +49,7 @@ impl Window {
 pub struct Track {
     /// Per record positions and velocities in trace order, 2N each.
     pub values: Vec<f64>,
-    /// How many records there are; fewer than the window where the motion ends early.
+    /// The number of records; fewer than the window where the motion ends early.
     pub records: usize,
 }
 

@@ -28,7 +28,7 @@ pub enum FileError {
     Linked {
         /// The file's name, escaped.
         name: String,
-        /// How many names it has.
+        /// The number of names that it has.
         links: u64,
     },
     /// The file is too long.

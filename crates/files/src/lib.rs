@@ -101,7 +101,7 @@ pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// As for [`read`]; also where the bytes are no UTF-8.
 pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
     String::from_utf8(read(name, limit)?)
-        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is no text: {}", error.utf8_error())))
+        .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is not text: {}", error.utf8_error())))
 }
 
 /// Reads an open file of at most this number of bytes.
@@ -113,13 +113,13 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
     patient(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
-        let text = format!("it is larger than {limit} bytes, which is the limit of such a file");
+        let text = format!("it is larger than {limit} bytes, the limit of such a file");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
     }
     Ok(bytes)
 }
 
-/// How long a pipe may stay without a writer.
+/// The longest time that a pipe may stay without a writer.
 const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 
 /// Returns a reader that waits for the bytes of a pipe's writer, but not for a writer that never comes.

@@ -16,7 +16,7 @@ pub enum FairVerdict {
     None,
 }
 
-/// Why a trace is refused as a whole.
+/// The reason why a trace is refused as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
@@ -92,7 +92,7 @@ impl Shares {
 pub struct Judgement {
     /// The verdict.
     pub verdict: FairVerdict,
-    /// Why the trace is refused as a whole, whatever its steps hold.
+    /// The reason why the trace is refused as a whole, whatever its steps hold.
     pub refusal: Option<FairRefusal>,
     /// The findings by the fair rules.
     pub findings: BookFindings,
@@ -101,7 +101,7 @@ pub struct Judgement {
     pub given_up: Option<u32>,
     /// How many decisions about pairs the trace holds, in all steps and passes.
     pub decisions: u64,
-    /// How many borderline decisions the trace has the other way.
+    /// The number of borderline decisions that the trace has the other way.
     pub borderline: u64,
     /// The first ones.
     pub borderline_examples: Vec<Borderline>,

@@ -76,7 +76,7 @@ pub struct Grade {
     /// Whether reports for students show of a scene what the program could have chosen, as what it printed: not where
     /// groups are hidden, unless the suite says so.
     pub shows_output: bool,
-    /// How the build ended, when the suite builds.
+    /// The way the build ended, when the suite builds.
     pub build: Option<Build>,
     /// The weaknesses of the sandbox, in words; empty when every required layer held.
     pub warnings: Vec<String>,
@@ -250,7 +250,7 @@ pub struct PassedOver {
 /// The build step's end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Build {
-    /// How it ended.
+    /// The way it ended.
     pub end: BuildEnd,
     /// The compiler's output, capped; raw text that a report has to escape.
     pub output: String,

@@ -6,7 +6,7 @@ use fosssim_model::{
     trace::{Malformation, Unreadable},
 };
 
-/// Why grading stopped before its end.
+/// The reason why grading stopped before its end.
 #[derive(Debug, Clone)]
 pub enum Stop {
     /// The trace can't be read on; the original says so and stops.
@@ -42,7 +42,7 @@ pub struct Outcome {
     pub steps: u32,
     /// The scene's collision handling.
     pub collisions: CollisionType,
-    /// Why grading stopped early.
+    /// The reason why grading stopped early.
     pub stop: Option<Stop>,
     /// The first damage that the original's reading passes over in silence, see [`Damage`].
     pub damage: Option<Damage>,

@@ -24,9 +24,9 @@ pub struct SceneResult {
     pub scene: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// Why that is the verdict.
+    /// The reason why that is the verdict.
     pub reason: Reason,
-    /// How the program ended, if it was run.
+    /// The way the program ended, if it was run.
     pub ended: Option<RunEnd>,
     /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
     pub differs: Option<Cause>,
@@ -109,7 +109,7 @@ pub struct Measurements {
     pub memory: Option<u64>,
 }
 
-/// Why a scene has its verdict.
+/// The reason why a scene has its verdict.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Reason {
     /// Every step is right.
@@ -120,7 +120,7 @@ pub enum Reason {
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
-    /// How the program ended ([`SceneResult::ended`]), and how far it came.
+    /// The way the program ended ([`SceneResult::ended`]), and how far it came.
     Program(ProgramProgress),
     /// The scene was left out.
     LeftOut(NotRunReason),
@@ -166,7 +166,7 @@ pub enum WrongTrace {
     Undecided,
 }
 
-/// Why a trace can't be read to its end.
+/// The reason why a trace can't be read to its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum BadTrace {
     /// A record can't be read.
@@ -208,7 +208,7 @@ pub enum Limit {
     Memory(u64),
 }
 
-/// Why a scene is not run any more.
+/// The reason why a scene is not run any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
     /// This number of scenes in a row ran into a limit of time, memory or output; with the worst verdict of these.
@@ -224,7 +224,7 @@ pub enum NotRunReason {
     FailFast,
 }
 
-/// Why a submission can't be run: its own fault.
+/// The reason why a submission can't be run: its own fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UnusableReason {
     /// The program can't be started.
@@ -251,7 +251,7 @@ pub enum FolderContents {
     Others {
         /// The first ones by name; folders end in a slash.
         names: Vec<String>,
-        /// How many there are besides.
+        /// The number of them besides.
         more: usize,
         /// A file of the right name in another place.
         elsewhere: Option<String>,
@@ -269,7 +269,7 @@ pub enum Failure {
         stage: Option<Activity>,
         /// The panic.
         fault: String,
-        /// Where the trace is that it failed on.
+        /// The place where the trace is that it failed on.
         trace: Option<SavedTrace>,
     },
 }
@@ -299,7 +299,7 @@ pub enum SavedTrace {
     },
 }
 
-/// How a build ended.
+/// The way a build ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BuildEnd {
     /// The build made the program.

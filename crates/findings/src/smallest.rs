@@ -19,7 +19,7 @@ pub struct SmallestScene {
     pub runs: u32,
     /// Whether no single attempt makes it smaller; else the search was stopped.
     pub is_minimal: bool,
-    /// How the program ended, where it did not end well.
+    /// The way the program ended, where it did not end well.
     pub note: Option<String>,
     /// The first thing that is wrong, as far as it may be told.
     pub first: Option<DisclosedFinding>,

@@ -36,8 +36,8 @@ impl Finding {
 /// trace's other polynomials tell.
 const LACKING: &str = "the trace's polynomials lack coefficients for that";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
-const LEFT_OUT: &str = "are within reach of the penalty force, no force was applied between them";
-const DOUBLED: &str = "are within reach of the penalty force, the force between them was applied twice";
+const LEFT_OUT: &str = "are within reach of the penalty force, but no force was applied between them";
+const DOUBLED: &str = "are within reach of the penalty force, but the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
 impl Display for WithoutStep<'_> {
@@ -48,12 +48,12 @@ impl Display for WithoutStep<'_> {
             FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
                 let (pair, time, normal) = (PairWords(pair), ExactNumber(time), VectorWords(normal.into()));
-                write!(f, "{pair} collide at time {time} with normal {normal}, the trace misses it")
+                write!(f, "{pair} collide at time {time} with normal {normal}, but the trace misses it")
             }
             FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
                 let (pair, time, normal) = (LoggedPair(&actual), ExactNumber(time), VectorWords(normal.into()));
-                write!(f, "the trace has {pair} collide at time {time} with normal {normal}, they do not")
+                write!(f, "the trace has {pair} collide at time {time} with normal {normal}, but they do not")
             }
             FindingDetail::WrongNormal { expected, actual, .. } => {
                 let pair = PairWords(expected.pair);
@@ -88,15 +88,14 @@ impl Display for WithoutStep<'_> {
             }
             FindingDetail::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
                 let times = [time, actual.time].map(ExactNumber);
-                write!(f, "{} collide at time {}, the trace says {}", PairWords(pair), times[0], times[1])
+                write!(f, "{} collide at time {}, but the trace says {}", PairWords(pair), times[0], times[1])
             }
             FindingDetail::RepeatedCollision { actual } => {
                 write!(f, "the collision of {} is logged more than once", LoggedPair(&actual))
             }
             FindingDetail::PassPositions { place } => write!(
                 f,
-                "{place}: belongs to other positions than those that the response or the failsafe before it \
-                 should lead to"
+                "{place}: follows from other positions than the response or the failsafe before it should give"
             ),
             FindingDetail::RecordsDiffer { part } => f.write_str(difference_of_records(part, is_first)),
             FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
@@ -260,7 +259,7 @@ impl Display for FindingKind {
     }
 }
 
-/// Why a step has no result.
+/// The reason why a step has no result.
 #[derive(Debug, Clone, Copy)]
 pub struct WithoutResult(pub StepError);
 
@@ -276,10 +275,9 @@ impl Display for WithoutResult {
             StepError::VortexHessian { .. } => {
                 f.write_str("a vortex force has no Hessian, which implicit integrators need")
             }
-            StepError::Work { .. } => f.write_str(
-                "up to here, judging took many times the work of the scene's own run, which is as much as a trace may \
-                 ask for",
-            ),
+            StepError::Work { .. } => {
+                f.write_str("up to here, judging took many times the work of the scene's own run, which is the limit")
+            }
         }
     }
 }

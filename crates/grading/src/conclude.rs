@@ -28,7 +28,7 @@ use std::{
 #[cfg(target_os = "linux")]
 const KEPT_OUTPUT: usize = 4096;
 
-/// How a program ended, what it took, and what it printed.
+/// The way a program ended, what it took, and what it printed.
 #[derive(Debug, Clone)]
 pub struct ProgramRun {
     ended: RunEnd,
@@ -73,7 +73,7 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
 pub struct Run<'a> {
     /// The scene.
     pub task: &'a SceneTask,
-    /// How the program ended.
+    /// The way the program ended.
     pub program: &'a ProgramRun,
     /// The judged trace.
     pub judged: &'a Outcome,

@@ -359,7 +359,7 @@ fn read_run(problems: &mut Vec<Problem>, run: Option<Spanned<Vec<String>>>) -> V
         }
     }
     if run.get_ref().first().is_some_and(|word| word != "{program}") {
-        problems.push((run.span(), "run has to begin with {program}".to_owned()));
+        problems.push((run.span(), "run must begin with {program}".to_owned()));
     }
     run.into_inner()
 }

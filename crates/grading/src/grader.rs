@@ -134,7 +134,7 @@ pub(super) struct SharedGrading<'a> {
     claimed: Mutex<BTreeSet<Key>>,
     /// Rings when a job has given a claim back.
     released: Condvar,
-    /// Why results can't be kept any more.
+    /// The reason why results can't be kept any more.
     pub(super) full: OnceLock<KeepError>,
     /// The contents of the plan's scenes, once somebody has asked.
     contents: OnceLock<Vec<Contents>>,

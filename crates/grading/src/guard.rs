@@ -52,7 +52,7 @@ fn listen() {
 fn message(payload: &(dyn Any + Send)) -> String {
     let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned());
-    words.map_or_else(|| "a panic without words".to_owned(), |words| words.replace('\n', " "))
+    words.map_or_else(|| "a panic without a message".to_owned(), |words| words.replace('\n', " "))
 }
 
 #[cfg(test)]

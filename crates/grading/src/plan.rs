@@ -152,7 +152,7 @@ fn resolved(
                         }
                         scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });
                     }
-                    Err(error) => problems.push((at, format!("scene {name} is not sound:\n{error}"))),
+                    Err(error) => problems.push((at, format!("scene {name} is not valid:\n{error}"))),
                 }
             }
         }

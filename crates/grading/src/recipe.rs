@@ -28,7 +28,7 @@ pub struct Recipe<'a> {
     pub program: &'a str,
     /// How sources are built, where the suite says.
     pub build: Option<&'a BuildStep>,
-    /// Where they are built.
+    /// The place where they are built.
     pub backend: &'a Backend,
     /// Stops a build.
     pub cancellation: &'a Cancellation,

@@ -28,7 +28,7 @@ pub struct Recording {
     sha256: String,
 }
 
-/// Why a scene can't be recorded.
+/// The reason why a scene can't be recorded.
 #[derive(Debug, thiserror::Error)]
 pub enum CannotRecord {
     /// The scene has errors.
@@ -82,7 +82,7 @@ impl Recording {
             Err(error) => text += &format!("{}: the recording can't be unpacked: {error}\n", self.name),
             Ok(recorded) if recorded != self.trace => {
                 let at = recorded.iter().zip(&self.trace).take_while(|(old, new)| old == new).count();
-                text += &format!("{}: the traces part at byte {at}\n", self.name);
+                text += &format!("{}: the traces differ from byte {at} on\n", self.name);
             }
             Ok(_) => {}
         }
@@ -150,7 +150,7 @@ mod tests {
         let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 4 };
         other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
         let shown = recording.difference(Some(&other.packed().unwrap()), Some(other.digests.as_bytes())).unwrap();
-        assert!(shown.contains("part at byte 97\n"), "{shown}");
+        assert!(shown.contains("differ from byte 97 on\n"), "{shown}");
         assert!(shown.contains("\n-3 ") && shown.contains("\n+3 ") && !shown.contains("\n-2 "), "{shown}");
     }
 

@@ -135,7 +135,7 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
 pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
     if !grade.groups.iter().all(|group| MOST_POINTS.contains(&group.max_points)) || grade.max_points != max_points {
-        Some("the points that can be reached are none that a suite gives")
+        Some("the reachable points are not those of a suite")
     } else if grade.points != points || !grade.groups.iter().all(follows) {
         Some("the points do not follow from the verdicts")
     } else if grade.verdict != verdict {

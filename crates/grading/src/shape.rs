@@ -171,7 +171,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
             let number = number(given).filter(|number| !range.contains(number));
             if let Some(number) = number {
                 let Range { start, end } = range;
-                problems.push((at, format!("{table}{name} is {number}: it has to lie between {start} and {end}")));
+                problems.push((at, format!("{table}{name} is {number}: it must be between {start} and {end}")));
             }
             number.is_none()
         }
@@ -253,7 +253,7 @@ fn unknown(key: &str, keys: &[Key], place: &str) -> String {
     let hint = match closest(key, here.clone()) {
         Some(name) => format!("did you mean `{name}`?"),
         None => match PLACES.iter().find(|(_, other)| names(other).any(|name| name == key)) {
-            Some((other, _)) => format!("it belongs into {other}"),
+            Some((other, _)) => format!("it belongs in {other}"),
             None => format!("there are {}", here.collect::<Vec<_>>().join(", ")),
         },
     };

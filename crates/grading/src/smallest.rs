@@ -73,7 +73,7 @@ pub struct WrongScenes<'a> {
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
 pub struct ShrunkScene {
-    /// Why the program is wrong on it.
+    /// The reason why the program is wrong on it.
     pub reason: WrongReason,
     /// The scene that it is made of.
     pub origin: String,
@@ -92,7 +92,7 @@ pub struct WrongScene<'a> {
     pub task: &'a SceneTask,
     /// The explanations of its trace.
     pub explanations: &'a [Explanation],
-    /// How the program ended.
+    /// The way the program ended.
     pub ended: &'a RunEnd,
 }
 

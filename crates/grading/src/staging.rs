@@ -41,13 +41,13 @@ const AT_ONE_GO: usize = 1 << 16;
 /// A program to run, with its digest. The copy goes away with it.
 #[derive(Debug)]
 pub struct StagedProgram {
-    /// Where it is.
+    /// The place where it is.
     pub program: PathBuf,
     /// The digest of its bytes; of its path when there is nothing that can be run.
     pub digest: blake3::Hash,
     /// How it was built.
     pub build: Option<Build>,
-    /// Why the submission itself can't be run: its own fault.
+    /// The reason why the submission itself can't be run: its own fault.
     pub refused: Option<UnusableReason>,
     /// Which file the copy is.
     pub(super) identity: Option<ProgramIdentity>,
@@ -59,7 +59,7 @@ pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
 
-/// Why a submission's files are not copied.
+/// The reason why a submission's files are not copied.
 #[derive(Debug)]
 pub(super) enum CopyError {
     /// The submission's own fault, in words.

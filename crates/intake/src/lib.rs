@@ -60,7 +60,7 @@ impl ArchiveLimits {
     }
 }
 
-/// Why an archive is not unpacked.
+/// The reason why an archive is not unpacked.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
     /// No archive of a kind that is read.
@@ -70,7 +70,7 @@ pub enum ArchiveError {
     #[error("the archive is damaged: {0}")]
     Damaged(String),
     /// A name leads out of the folder, or is none.
-    #[error("the archive has a file of a name that is not allowed: {0}")]
+    #[error("the archive has a file with a forbidden name: {0}")]
     Name(String),
     /// Something that is neither file nor folder.
     #[error("the archive has {0}, which is neither a file nor a folder; links and devices are not allowed")]
@@ -471,7 +471,7 @@ mod tests {
         assert!(matches!(look(tar::EntryType::GNUSparse, 0, &long), Err(ArchiveError::Kind(_))));
         let passed_over = ArchiveLimits { bytes: 1 << 20, entries: 2 };
         let told = look_through(tar(tar::EntryType::XGlobalHeader, 2 << 20, &long), passed_over).unwrap_err();
-        assert!(told.to_string().contains("too much reading"), "{told}");
+        assert!(told.to_string().contains("too long for its content"), "{told}");
     }
 
     #[test]
@@ -497,6 +497,6 @@ mod tests {
         let mut file = tempfile::tempfile().unwrap();
         file.write_all(&bytes).unwrap();
         let told = look_through(file, ArchiveLimits::USUAL).unwrap_err().to_string();
-        assert!(told.contains("too much reading"), "{told}");
+        assert!(told.contains("too long for its content"), "{told}");
     }
 }

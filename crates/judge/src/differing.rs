@@ -1,4 +1,4 @@
-//! Which coefficients of a wrong polynomial a person would call wrong.
+//! Finds the coefficients of a wrong polynomial that a person would call wrong.
 //!
 //! Any positive factor is right, so the factor on which most coefficients agree is taken out first, 1 before all
 //! others. The original rescales by sums of moduli instead (oracle-behavior.md 6.2), where one wrong coefficient moves

@@ -34,7 +34,7 @@ pub struct WrongStep<'a> {
 pub struct StepFindings<'a> {
     /// The first finding of each kind, in the order in which they were made.
     pub firsts: &'a [Finding],
-    /// How many there are of each kind besides.
+    /// The number of them of each kind besides.
     pub more: FindingCounts,
 }
 

@@ -17,7 +17,7 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// Why a trace can't be judged against a recording: always the recording's fault.
+/// The reason why a trace can't be judged against a recording: always the recording's fault.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the recording can't be used: frame {frame}, byte {offset}: {message}; record it again")]
 pub struct RecordingError {

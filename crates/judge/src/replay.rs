@@ -41,7 +41,7 @@ const BATCH_STEPS: usize = 256;
 struct StepSlot {
     /// The step's number, from 1.
     step: u32,
-    /// The offset of its end record.
+    /// The offset of the step's end record.
     last: u64,
     before: State,
     /// The order of bodies from which the reference begins, in a contest.
@@ -391,7 +391,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mid = self.shape.layout.polynomials.then_some(&slot.mid);
         let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
         if let Some(error) = slot.error {
-            // Nobody can say what would be right if the scene itself has no result.
+            // If the scene itself has no result, no answer is right.
             has_judged &= reach.has_result(step);
             slot.fair = StepJudgement::default().also(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {

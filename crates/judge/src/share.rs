@@ -1,4 +1,4 @@
-//! How many steps are right or wrong, in words that every report shares.
+//! The number of steps that are right or wrong, in words that every report shares.
 
 /// Returns words such as `all 15 steps are right`, `the only step is right`. `count` writes numbers.
 #[must_use]

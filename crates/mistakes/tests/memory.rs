@@ -1,4 +1,4 @@
-//! How much memory it takes to explain a small trace of a large scene.
+//! The memory that it takes to explain a small trace of a large scene.
 use fosssim_mistakes::diagnose::explain;
 use fosssim_model::scene::{Collision, CollisionDetection, Display, Edge, Integrator, Particle, Scene};
 use fosssim_num::vector::Vec2;

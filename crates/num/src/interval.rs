@@ -8,7 +8,7 @@
 pub struct Interval {
     /// Where it starts, as a fraction of the step.
     pub lo: f64,
-    /// Where it ends.
+    /// The place where it ends.
     pub hi: f64,
 }
 

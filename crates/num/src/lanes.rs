@@ -3,7 +3,7 @@
 //!
 //! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on how numbers are put
 //! together. Only the sign of a NaN may differ, which is the compiler's choice: code that needs its bits keeps NaN out.
-//! How many lanes there are depends on the machine ([`Instructions`]); on one without wide instructions it is one.
+//! The number of lanes depends on the machine ([`Instructions`]); on one without wide instructions it is one.
 use super::vector::Vec2;
 use pulp::Arch;
 pub use pulp::Simd;
@@ -143,7 +143,7 @@ pub struct Lanes<S: Simd> {
 }
 
 impl<S: Simd> Lanes<S> {
-    /// How many there are.
+    /// The number of them.
     pub const COUNT: usize = S::F64_LANES;
 
     /// Returns one number in all lanes.

@@ -35,7 +35,7 @@ impl ClipRectangle {
         }
         let at = |time: f64| [from[0] + time * way[0], from[1] + time * way[1]];
         let ends = [if enter > 0.0 { at(enter) } else { from }, if leave < 1.0 { at(leave) } else { to }];
-        // Where the line is so long that its points carry no digits inside, nothing can be drawn of it.
+        // A line is not drawn if it is so long that its points have no digits left inside the picture.
         let near = |[x, y]: Point| {
             let room = 1.0 + self.high[0] - self.low[0] + self.high[1] - self.low[1];
             x >= self.low[0] - room && x <= self.high[0] + room && y >= self.low[1] - room && y <= self.high[1] + room

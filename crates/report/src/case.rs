@@ -7,7 +7,7 @@ use fosssim_mistakes::diagnose::Explanation;
 pub struct Case {
     /// The scene's name.
     pub scene: String,
-    /// Where the trace comes from.
+    /// The place where the trace comes from.
     pub trace: String,
     /// Whether the fair rules accept it.
     pub accepted: bool,

@@ -47,7 +47,7 @@ pub struct Place<'a> {
 pub struct Detect<'a> {
     /// The computation.
     pub study: &'a Study,
-    /// Where the pair comes from; `None` when its numbers were typed.
+    /// The place where the pair comes from; `None` when its numbers were typed.
     pub place: Option<Place<'a>>,
 }
 
@@ -117,7 +117,7 @@ impl Detect<'_> {
                         let expected = curve.logged.coefficients();
                         // Their lengths may differ by what the course's library drops.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
-                            let mark = "right but for a factor and small leading coefficients, as it may be";
+                            let mark = "right except for a factor and small leading coefficients, which is allowed";
                             format!("  {}: {}\n    {}\n", curve.role, style.paint(Look::Good, mark), polynomial(own))
                         } else {
                             beside(&curve.role.to_string(), expected, own, style)
@@ -128,8 +128,7 @@ impl Detect<'_> {
                     text += &format!("  {}\n", style.paint(Look::Bad, "nothing for this pair in this pass"))
                 }
                 CallLog::Unknown => {
-                    text += "  it can't be told which of its polynomials are this pair's: it logged another number of \
-                        them\n";
+                    text += "  the trace logged another number of polynomials, so this pair's are not known\n";
                 }
             }
         }
@@ -188,8 +187,8 @@ fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     let same = expected == own;
     let (look, mark) = match wrong.is_empty() {
         true if same => (Look::Good, "the same".to_owned()),
-        true if factor == 1.0 => (Look::Good, "the same but for rounding".to_owned()),
-        true => (Look::Good, format!("the same but for the factor {}, which is right", exact(factor))),
+        true if factor == 1.0 => (Look::Good, "the same except for rounding".to_owned()),
+        true => (Look::Good, format!("the same except for the factor {}, which is right", exact(factor))),
         false => (Look::Bad, "differs".to_owned()),
     };
     let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), polynomial(own));
@@ -386,7 +385,7 @@ struct MotionView {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct PointView {
-    /// Where it is at the start of the step.
+    /// The place where it is at the start of the step.
     start: [Number; 2],
     /// How far it goes within the step.
     displacement: [Number; 2],

@@ -24,7 +24,7 @@ impl<T: Into<String>> From<T> for Cell {
     }
 }
 
-/// Where the text of a column stands.
+/// The place where the text of a column stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// At its left edge.

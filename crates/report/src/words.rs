@@ -21,7 +21,7 @@ use fosssim_model::assignments::{Assignment, Definition};
 
 /// The words for a trace without the lists that its scene asks for.
 pub const STATES_ONLY: &str =
-    "the trace holds positions and velocities only, as that of a program whose library knows no collisions";
+    "the trace holds only positions and velocities, like that of a program without collisions";
 
 /// The exit code of shells and loaders that did not find what they were to run.
 const NOT_FOUND: i32 = 127;
@@ -138,7 +138,7 @@ pub fn build(end: &BuildEnd) -> String {
         BuildEnd::Made => "the build succeeded".to_owned(),
         BuildEnd::Ended(ended) => format!("the build {ended}"),
         BuildEnd::MadeNo(program) => format!("the build made no {program}"),
-        BuildEnd::Unusable(why) => format!("what the build made can't be used: {why}"),
+        BuildEnd::Unusable(why) => format!("the built program can't be used: {why}"),
         BuildEnd::Sources(why) => format!("the submission can't be built: {why}"),
         BuildEnd::NoScript(command) => format!("the submission holds no {command}, which builds it"),
     }
@@ -204,7 +204,7 @@ fn describe_left_out(why: NotRunReason) -> String {
         }
         NotRunReason::Total(total) => {
             let seconds = total.as_secs_f64();
-            format!("not run: the scenes before it took {seconds} s, all that a submission has")
+            format!("not run: the scenes before it took {seconds} s, the limit for a submission")
         }
         NotRunReason::FailFast => "not run: a scene before it is not accepted (--fail-fast)".to_owned(),
     }

@@ -14,7 +14,7 @@ use super::{
 /// The answer of a fake run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FakeRun {
-    /// How it ended.
+    /// The way it ended.
     pub ended: RunEnd,
     /// The trace that it leaves, if the job has one; nothing leaves none.
     pub trace: Vec<u8>,

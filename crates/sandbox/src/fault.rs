@@ -25,7 +25,7 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// The supervisor ended without a report.
-    #[error("the sandbox's supervisor was lost ({how}); what it ran has been ended")]
+    #[error("the sandbox's supervisor was lost ({how}); its processes were ended")]
     Lost {
         /// A description of its end, as far as it is known.
         how: String,
@@ -47,7 +47,7 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// A path that the program should be able to read is not there.
-    #[error("{path}, which the program is to read: {source}")]
+    #[error("{path}, which the program must read: {source}")]
     Readable {
         /// The path.
         path: String,

@@ -150,8 +150,8 @@ impl Job {
         self
     }
 
-    /// Puts a file of this name and content into the working folder before the program starts. Where that folder lies
-    /// in memory, so does the file, and nowhere else.
+    /// Puts a file with this name and content into the working folder before the program starts. If that folder is in
+    /// memory, the file is only there.
     #[must_use]
     pub fn file(mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         self.files.push((name.into(), content.into()));

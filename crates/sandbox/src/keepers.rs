@@ -156,8 +156,7 @@ impl Host {
         let _ = child.map(Child::kill);
     }
 
-    /// Puts the keeper to rest after its run, whose report this is, if there is one. Only a keeper whose run has simply
-    /// ended serves others.
+    /// Keeps the keeper for another run, if the report says that its run ended by itself.
     pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {

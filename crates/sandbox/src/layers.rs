@@ -31,7 +31,7 @@ layers! {
     NoNewPrivileges "no new privileges";
     /// Resource limits, clocks and counters.
     Limits "resource limits";
-    /// The supervisor adopts orphans, so that nothing outlives a run.
+    /// The supervisor adopts orphans, so that no process outlives a run.
     Reaper "reaper of orphans";
     /// Copies of programs can be executed: not a wall, but nothing can be graded without.
     Execution "executable copies";
@@ -99,7 +99,7 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
         report(
             Layer::NoNewPrivileges,
             probe.no_new_privileges.clone(),
-            "executing a program gains nothing",
+            "executing a program gives no privileges",
             true,
             "use Linux 3.5 or newer",
         ),
@@ -113,7 +113,7 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
         report(
             Layer::Reaper,
             probe.reaper.clone(),
-            "nothing outlives a run",
+            "no process outlives a run",
             true,
             "allow prctl in the container's profile",
         ),
@@ -175,7 +175,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
         report(
             Layer::Scopes,
             scopes,
-            "programs signal nobody but themselves",
+            "programs can signal only themselves",
             false,
             "use Linux 6.12 or newer; until then the system call filter alone confines signals",
         ),
@@ -215,7 +215,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
             Layer::ControlGroup,
             probe.group.clone(),
             &match (&probe.group_controls[..], probe.group_ends) {
-                ([], _) => "a run ends as a whole; no controller for memory or processes is to be had".to_string(),
+                ([], _) => "a run ends as a whole; no controller for memory or processes is available".to_string(),
                 (controls, true) => format!("a run ends as a whole; the kernel limits {}", controls.join(", ")),
                 (controls, false) => format!("the kernel limits {}", controls.join(", ")),
             },
@@ -309,7 +309,7 @@ pub(super) fn none() -> Arc<[LayerReport]> {
         required: false,
         detail: match layer {
             Layer::Limits => "processor and clock time, memory, output and folder only".into(),
-            Layer::Reaper => "nothing outlives a run".into(),
+            Layer::Reaper => "no process outlives a run".into(),
             _ => "switched off on request".to_string(),
         },
         remedy: None,

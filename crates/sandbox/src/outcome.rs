@@ -1,4 +1,4 @@
-//! How a run ended, as the kernel saw it.
+//! The way a run ended, as the kernel saw it.
 
 use std::{sync::Arc, time::Duration};
 
@@ -18,7 +18,7 @@ pub struct CapturedOutput {
 /// Everything about one run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunOutcome {
-    /// How it ended.
+    /// The way it ended.
     pub ended: RunEnd,
     /// Processor time, user and system, of the whole tree.
     pub cpu: Duration,

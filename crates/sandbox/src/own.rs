@@ -18,11 +18,11 @@ const THIS: &str = "/proc/self/exe";
 const SAMPLE: &str = "fosssim-sample";
 /// How the names of the grader's programs begin.
 const NAMES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
-/// Where they are usually installed.
+/// The place where they are usually installed.
 const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
 /// How the names begin of the module for Python and of the folder that `pip` makes beside it.
 const MODULE: &str = "fosssim";
-/// Where the folders of Pythons are.
+/// The place where the folders of Pythons are.
 const PYTHONS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
 /// Where modules are in the folder of a Python.
 const MODULES: [&str; 2] = ["dist-packages", "site-packages"];

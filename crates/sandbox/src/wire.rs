@@ -183,7 +183,7 @@ pub(super) struct Probe {
     pub(super) notify: Option<String>,
     pub(super) own_user: Option<String>,
     pub(super) reaper: Option<String>,
-    /// Why copies of programs can't be executed.
+    /// The reason why copies of programs can't be executed.
     pub(super) execution: Option<String>,
     /// Whether they are executed in memory, because the temporary folder forbids it.
     pub(super) from_memory: bool,

@@ -26,7 +26,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     Ok(completion)
 }
 
-/// Says that a try came to nothing; after the last one the judge error is written.
+/// Says that a try failed; after the last one the judge error is written.
 ///
 /// # Errors
 /// An error of the database.
@@ -64,10 +64,10 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
     bury_all(&mut transaction, &tick.buried).await?;
     transaction.commit().await?;
     if tick.outage {
-        tracing::warn!("nobody looked after the queue for a while, so all leases begin anew");
+        tracing::warn!("the queue was not served for a while, so all leases begin again");
     }
     if tick.retried > 0 {
-        tracing::warn!(jobs = tick.retried, "jobs of workers that went silent wait again");
+        tracing::warn!(jobs = tick.retried, "jobs of silent workers wait again");
     }
     for job in &tick.buried {
         tracing::error!(job = job.job, worker = job.worker, fault = job.fault, "a job was tried too often");
@@ -209,7 +209,7 @@ async fn write_result(
     Ok(about)
 }
 
-/// Why another result is to count.
+/// The reason why another result is to count.
 #[derive(Debug, Clone, Copy)]
 pub struct GradeChange<'a> {
     /// The submission with the grade.

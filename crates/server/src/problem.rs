@@ -3,7 +3,7 @@ use crate::{db::DbError, store::StoreError};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// Why a request was refused.
+/// The reason why a request was refused.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Problem {
     /// A name that programs may go by.
@@ -22,8 +22,8 @@ pub struct Problem {
     pub wait: Option<u64>,
 }
 
-/// Why a request is refused: the status, a name for programs, words, what is wrong, and what to do about it. A detail
-/// or a remedy that the caller gives is an argument.
+/// The reason why a request is refused: the status, a name for programs, words, what is wrong, and what to do about it.
+/// A detail or a remedy that the caller gives is an argument.
 macro_rules! problems {
     ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*): $status:literal, $kind:literal, $title:literal,
         $detail:expr, $remedy:expr;)*) => {
@@ -46,7 +46,7 @@ macro_rules! problems {
 problems! {
     /// Nobody has said who asks.
     not_signed_in(): 401, "not-signed-in", "Not signed in",
-        "this needs somebody who is signed in",
+        "this needs a sign-in",
         "sign in, or send a token: Authorization: Bearer fso_...";
     /// The token, session or link is none of ours, or not any more.
     unknown_secret(what: &str, remedy: &str): 401, "unknown-secret", "Not signed in",
@@ -59,10 +59,10 @@ problems! {
     /// Known, and not allowed.
     not_allowed(detail: impl Into<String>): 403, "not-allowed", "Not allowed",
         detail,
-        "ask somebody whose role allows it";
+        "ask a person whose role allows it";
     /// The server is not started with passwords.
     no_passwords(): 403, "not-allowed", "Not allowed",
-        "this server takes no passwords",
+        "this server accepts no passwords",
         "sign in by a link, a token, or from your learning platform";
     /// Known, but it is not certain that it is the person.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
@@ -70,23 +70,23 @@ problems! {
         "sign in again on this server's pages, and do it there";
     /// A request that another site may have made a browser send.
     cross_site(): 403, "cross-site", "Sent from another site",
-        "the browser says that another site sent this, or nothing says who did",
+        "the request came from another site, or does not say where it came from",
         "send it from this site's own pages, or with a token instead of a cookie";
     /// Somebody can't come from a learning platform so.
-    refused_launch(detail: impl Into<String>): 403, "launch-refused", "You can't come in so",
+    refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
-        "go back to the platform and open it there again; if this comes again, show it to who runs this server";
+        "go back to the platform and open it there again; if it happens again, tell the server's administrator";
     /// A learning platform did not do what it was asked.
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,
-        "try again later; if this comes again, show it to who runs this server";
+        "try again later; if it happens again, tell the server's administrator";
     /// There is no such thing, or none that the asker may know of.
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
         "check the address";
     /// The thing was there, and is not kept any longer.
-    removed(): 410, "removed", "Not kept any longer",
-        "the upload and its reports are not kept any longer; the grade and its history are",
+    removed(): 410, "removed", "No longer kept",
+        "the upload and its reports were removed; the grade and its history are kept",
         "ask the course's staff about the grade";
     /// Something in the request is not as it must be.
     invalid(detail: impl Into<String>): 400, "invalid", "Not understood",
@@ -103,11 +103,11 @@ problems! {
     /// The upload is no submission.
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,
-        "mend the file and upload it again; nothing was counted";
+        "correct the file and upload it again; this did not count as an attempt";
     /// The upload is no suite.
     no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is not a suite",
         detail,
-        "mend the suite and upload it again; the assignment has the suite that it had";
+        "correct the suite and upload it again; the assignment keeps its suite";
     /// An upload with more bytes than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most)),
@@ -118,8 +118,8 @@ problems! {
         "send less in one request";
     /// A method that the address does not take.
     wrong_method(method: &str): 405, "wrong-method", "Not done so",
-        format!("this address does not take {method}"),
-        "look into the API's description: /api/openapi.json";
+        format!("this address does not accept {method}"),
+        "see the API's description: /api/openapi.json";
     /// The disk is nearly full.
     no_room(): 507, "no-room", "No room",
         "the server's disk is nearly full; nothing was stored",
@@ -131,7 +131,7 @@ problems! {
                       nothing was stored";
     /// The body came too slowly.
     too_slow(): 408, "too-slow", "Too slow",
-        "the rest of the request did not come in time",
+        "the rest of the request did not arrive in time",
         "send it again";
     /// Too many requests or submissions.
     too_many(detail: impl Into<String>): 429, "too-many", "Too many",
@@ -181,7 +181,7 @@ impl From<StoreError> for Problem {
         match error {
             StoreError::Missing(_) => Self::not_found("file"),
             StoreError::Damaged(_) => Self::fault(),
-            StoreError::Failed(_) => Self::unavailable("the store of files does not work"),
+            StoreError::Failed(_) => Self::unavailable("the file store does not work"),
         }
     }
 }

@@ -16,7 +16,7 @@ pub const LEAST_AGE: Duration = Duration::from_secs(24 * 3600);
 /// Submissions that are given up in one transaction.
 const BATCH: i64 = 500;
 
-/// Why nothing was given up, or not all.
+/// The reason why nothing was given up, or not all.
 #[derive(Debug, Error)]
 pub enum RetentionError {
     /// The database says so.
@@ -86,7 +86,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     }
     if submissions > 0 {
         let mut transaction = database.begin().await?;
-        let text = format!("uploads and reports of {submissions} submissions are not kept any longer");
+        let text = format!("uploads and reports of {submissions} submissions were removed");
         let statement = "INSERT INTO event (happened_at, kind, text) VALUES ({now}, 'retention', ?)";
         transaction.execute(statement, values![text]).await?;
         transaction.commit().await?;

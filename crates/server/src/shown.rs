@@ -96,7 +96,7 @@ fn nothing() -> ShownGrade {
         code: "NR".to_owned(),
         points: None,
         max_points: None,
-        summary: "what counts is not shown yet".to_owned(),
+        summary: "the grade is not shown yet".to_owned(),
     }
 }
 
@@ -125,7 +125,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
         points: sum(|group| group.points),
         max_points: sum(|group| group.max_points),
-        summary: format!("{accepted} of {} scenes accepted; what else counts is not shown yet", scenes.len()),
+        summary: format!("{accepted} of {} scenes accepted; the other groups are not shown yet", scenes.len()),
     })
 }
 

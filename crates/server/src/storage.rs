@@ -19,7 +19,7 @@ use tokio::sync::Mutex;
 /// A proof counts so long: monitors that ask more often than this cost one write.
 const PROOF_COUNTS: Duration = Duration::from_secs(2);
 
-/// How long a proof may take: probes wait for five seconds.
+/// The longest time that a proof may take: probes wait for five seconds.
 const PROOF_TIME: Duration = Duration::from_secs(3);
 
 /// Database, store and disk, as far as writing to them goes.
@@ -104,7 +104,7 @@ impl Storage {
     pub fn ensure_room(&self) -> Result<(), Problem> {
         // A disk that does not say how full it is can't be refused by.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {
-            tracing::error!(low_water = self.low_water, "uploads are refused: the disk is nearly full");
+            tracing::error!(low_water = self.low_water, "uploads are rejected: the disk is nearly full");
             return Err(Problem::no_room());
         }
         Ok(())

@@ -52,7 +52,7 @@ pub struct Artifact {
     pub size: u64,
 }
 
-/// Why an artifact can't be stored or read.
+/// The reason why an artifact can't be stored or read.
 #[derive(Debug, Error)]
 pub enum StoreError {
     /// There is none of this digest.
@@ -108,7 +108,7 @@ impl FromStr for Digest {
         if text.len() == 64 && text.bytes().all(is_hex) {
             return Ok(Self(text.to_owned()));
         }
-        Err("a digest is 64 digits of lower-case hexadecimal".to_owned())
+        Err("a digest must be 64 digits of lower-case hexadecimal".to_owned())
     }
 }
 
@@ -130,7 +130,7 @@ impl fmt::Display for Digest {
 #[derive(Debug, Clone)]
 pub struct Store {
     objects: Arc<dyn ObjectStore>,
-    /// Where it is a folder.
+    /// The path, if it is a folder.
     folder: Option<PathBuf>,
 }
 
@@ -154,7 +154,7 @@ impl Store {
         let place = address.strip_prefix("s3://").unwrap_or_default();
         let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
         if bucket.is_empty() {
-            return Err(StoreError::Failed(format!("{address} is no s3://BUCKET/PREFIX")));
+            return Err(StoreError::Failed(format!("{address} must be s3://BUCKET/PREFIX")));
         }
         Self::s3(bucket, prefix)
     }

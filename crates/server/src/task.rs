@@ -121,7 +121,7 @@ pub struct Outcome {
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
-    /// How long it took, in seconds; missing while groups are withheld.
+    /// The time that it took, in seconds; missing while groups are withheld.
     #[schema(value_type = Decimal)]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub seconds: String,
@@ -147,7 +147,7 @@ impl Outcome {
         Self {
             verdict: "judge error".to_owned(),
             code: JUDGE_ERROR.to_owned(),
-            summary: "the grader failed, which is no fault of the submission; the course's staff is told".to_owned(),
+            summary: "the grader failed, which is not the submission's fault; staff is informed".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             seconds: "0".to_owned(),
             shown: Some(String::new()),

@@ -21,10 +21,10 @@ pub struct ClaimedJob {
 /// A sign of life.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct SignOfLife {
-    /// How many gradings it does at one time; 0 while it can't grade.
+    /// The number of gradings that it does at one time; 0 while it can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
-    /// Why it can't.
+    /// The reason why it can't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
     /// The worker's version.
@@ -66,7 +66,7 @@ pub(crate) struct Renewal {
     pub(crate) progress: Option<Progress>,
 }
 
-/// Why a try came to nothing.
+/// The reason why a try failed.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct JobFault {
     pub(crate) lease: Lease,

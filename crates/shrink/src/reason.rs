@@ -1,4 +1,4 @@
-//! Why a program is wrong on a scene, and whether it is wrong for the same reason on another.
+//! The reason why a program is wrong on a scene, and whether it is wrong for the same reason on another.
 use fosssim_ended::RunEnd;
 use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::FailureKind};
 use fosssim_judge::replay::{Options, judge};
@@ -14,7 +14,7 @@ const PLAIN: f64 = 1e-6;
 pub struct Observation {
     /// The trace, as far as it was written.
     pub trace: Vec<u8>,
-    /// How the program ended.
+    /// The way the program ended.
     pub ended: RunEnd,
 }
 
@@ -26,7 +26,7 @@ impl Observation {
     }
 }
 
-/// Why a program is wrong.
+/// The reason why a program is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WrongReason {
     /// The program does not end well: by this signal, with this exit code, or at this limit.

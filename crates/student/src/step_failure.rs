@@ -1,7 +1,7 @@
-//! Why a step of a student's program has no end.
+//! The reason why a step of a student's program has no end.
 use fosssim_num::rpoly::DoesNotTerminate;
 
-/// Why a step has no end.
+/// The reason why a step has no end.
 #[derive(Debug, thiserror::Error)]
 pub enum StepFailure {
     /// The course's root finder would search for ever.

@@ -10,7 +10,7 @@ use fosssim_oracle::{
 /// The environment variable that names a mistake.
 const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
 
-/// Where a mistake is pinned to a copy of this program: nothing else is asked then.
+/// The place where a mistake is pinned to a copy of this program: nothing else is asked then.
 static PINNED: pin::Place = pin::empty();
 
 /// A copy or link of the program with this prefix makes the mistake that follows it.

@@ -16,7 +16,7 @@ use fosssim_oracle::student::{Area, Mistake, Student};
 const FLOOD_BYTES: usize = 256 << 20;
 const PRINTED_BYTES: usize = 16 << 20;
 
-/// How much memory a hog takes.
+/// The memory that a hog takes.
 const HOG_BYTES: usize = 4 << 30;
 
 /// Where hostile programs put their names.

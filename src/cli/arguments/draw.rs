@@ -84,7 +84,7 @@ The first two are the assignment's worked examples. Their overlap polynomials ar
   -361 t^4 - 304 t^3 - 468 t^2 - 288 t
   -16 t^4 - 68 t^2 + 36 t - 16
 
-A pair is one word: pp, pe or ph (particle with particle, edge, half-plane) and its points behind colons: the \
+A pair is one word: pp, pe or ph (particle with particle, edge, half-plane) and its points after colons: the \
 particles' centers, the particle and the edge's two ends, or the particle, a point on the boundary and the normal. A \
 moving point is X,Y+DX,DY (start and displacement) or X,Y..X,Y (start and end).")]
 pub(in crate::cli) struct DetectArguments {

@@ -41,12 +41,12 @@ Example:
 A folder holds one submission per entry: a program, an archive (.zip, .tar.gz, .tar), or a folder with a program of \
 the name that --program gives. A folder that holds such a program itself is one submission, and with --single it is \
 one in any case. When the suite has a [build] table, folders and archives are built first. A program runs without the \
-files beside it.
+files next to it.
 
 With --output, the folder keeps results as they come. (Several submissions always have one, fosssim-grades by default.) \
-An interrupted grading goes on where it stopped. A scene is run again only if the program, the scene or the rules \
+An interrupted grading continues where it stopped. A scene is run again only if the program, the scene or the rules \
 changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, scenes.csv, \
-class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part are no grade.")]
+class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part are not a grade.")]
 pub(in crate::cli) struct GradeArguments {
     /// Programs, or folders of submissions.
     #[arg(required = true)]
@@ -61,9 +61,8 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
     pub(in crate::cli) format: Vec<String>,
-    /// The reader of the reports. Staff is told everything; students are told what the suite's hints let them know,
-    /// and their pages leave out groups that it hides. The output folder gets pages of both kinds; those to hand out
-    /// are in students/.
+    /// The reader of the reports. Staff sees everything; students see what the suite's hints allow, without groups that
+    /// it hides. The output folder gets pages of both kinds; those for students are in students/.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
     /// Number of runs at one time. One per core by default.
@@ -75,7 +74,7 @@ pub(in crate::cli) struct GradeArguments {
     /// Only scenes that were not accepted when the same submissions were graded last.
     #[arg(long)]
     pub(in crate::cli) failed: bool,
-    /// How much reports tell their reader. By default staff is told everything, and students what the suite says.
+    /// How much reports show. By default staff sees everything, and students what the suite says.
     /// `full` may give a formula away.
     #[arg(long, value_parser = hints(), value_name = "LEVEL")]
     pub(in crate::cli) hints: Option<Hints>,
@@ -90,13 +89,13 @@ pub(in crate::cli) struct GradeArguments {
     /// see do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
     pub(in crate::cli) progress: Option<PathBuf>,
-    /// Beside reports for students, write the page that tells staff everything.
+    /// With reports for students, also write the page for staff, which shows everything.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
     pub(in crate::cli) staff_page: Option<PathBuf>,
-    /// Beside reports for students, write the page that they see when hidden groups are published, if there are any.
+    /// With reports for students, also write the page that they see when hidden groups are published, if there are any.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
     pub(in crate::cli) published_page: Option<PathBuf>,
-    /// Keep hidden groups in reports for students, because a platform that hides them itself asks for the reports.
+    /// Keep hidden groups in reports for students, because the platform that asks for them hides these groups itself.
     #[arg(long, env = "FOSSSIM_PLATFORM_HIDES")]
     pub(in crate::cli) platform_hides: bool,
     /// Show a line per submission only.
@@ -111,7 +110,7 @@ pub(in crate::cli) struct GradeArguments {
     /// A folder is one submission, not a folder of submissions.
     #[arg(long)]
     pub(in crate::cli) single: bool,
-    /// An earlier grading, to tell what became right and what broke since: its output folder, its grades.jsonl, or
+    /// An earlier grading, to show what became right and what broke since: its output folder, its grades.jsonl, or
     /// what --format json wrote.
     #[arg(long, value_name = "OLD")]
     pub(in crate::cli) compare: Option<PathBuf>,
@@ -139,8 +138,8 @@ pub(in crate::cli) struct GradeArguments {
     /// for each scene.
     #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single", "smallest"])]
     pub(in crate::cli) traces: bool,
-    /// Run programs even if required layers of the sandbox are missing. The other layers stay up, and every report
-    /// names the missing ones.
+    /// Run programs even if required layers of the sandbox are missing. The other layers remain, and every report names
+    /// the missing ones.
     #[arg(long)]
     pub(in crate::cli) unsafe_no_sandbox: bool,
 }
@@ -176,7 +175,7 @@ Example:
   fosssim-oracle grade submissions/ --shard 2/2 --output grades    # on another
   fosssim-oracle merge grades
 
-All shards of one grading have to be there, each once. The exit code is that of the grading.")]
+All shards of one grading must be there, each once. The exit code is that of the grading.")]
 pub(in crate::cli) struct MergeArguments {
     /// Folders of shards, or folders that hold them.
     #[arg(required = true)]
@@ -186,7 +185,7 @@ pub(in crate::cli) struct MergeArguments {
     pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(in crate::cli) format: Vec<String>,
-    /// The reader of HTML pages. Pages for students go to students/, beside those for staff.
+    /// The reader of HTML pages. Pages for students go to students/, next to those for staff.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
     /// Show a line per submission only.
@@ -252,7 +251,7 @@ Example:
   fosssim-oracle demo
   fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
 pub(in crate::cli) struct DemoArguments {
-    /// The sample program; by default fosssim-sample beside this program.
+    /// The sample program; by default fosssim-sample next to this program.
     #[arg(long, value_name = "PROGRAM")]
     pub(in crate::cli) sample: Option<PathBuf>,
     /// The mistake of the wrong sample, or several, separated by commas; fosssim-sample --list lists them.

@@ -44,7 +44,7 @@ Exit codes:
   0  accepted, or done
   1  graded and not accepted; traces or recordings that differ
   2  wrong usage, an input that can't be used, or the program's own fault
-  130  stopped by Ctrl-C or SIGTERM; what was kept is kept
+  130  stopped by Ctrl-C or SIGTERM; results so far are kept
 
 SUITE is a file, or a milestone of the course: t1m1, t1m2, t1m3, t2m1, t2m2 or t2m3.
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
@@ -86,7 +86,7 @@ pub(super) enum Command {
     Doctor(DoctorArguments),
     /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
     Selftest(SelftestArguments),
-    /// Runs a course's grading server, the program fosssim-server beside this one.
+    /// Runs a course's grading server, the program fosssim-server next to this one.
     Serve(ServeArguments),
     /// Writes the page that checks traces in any browser, with nothing installed.
     Page(PageArguments),
@@ -218,8 +218,8 @@ pub(super) struct ExplainArguments {
     /// The program to run.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
-    /// The milestone of the program, whose small scenes it runs. By default the program's own: which scenes it takes
-    /// tells it.
+    /// The milestone of the program, whose small scenes it runs. By default the program's own, recognized by the scenes
+    /// that it accepts.
     #[arg(
         long,
         alias = "assignment",
@@ -229,7 +229,7 @@ pub(super) struct ExplainArguments {
         requires = "program"
     )]
     pub(super) suite: Option<Assignment>,
-    /// How much the explanation tells.
+    /// How much the explanation shows.
     #[arg(long, value_parser = explaining(), default_value = "full")]
     pub(super) hints: Hints,
     /// How the report is written.
@@ -259,7 +259,7 @@ pub(super) struct ShrinkArguments {
     pub(super) program: PathBuf,
     /// The scene to begin with, a file or asset:Group/name. By default the suite's, or small scenes of the milestone.
     pub(super) scene: Option<PathBuf>,
-    /// The suite whose scenes are tried. By default the program's milestone is found out.
+    /// The suite whose scenes are tried. By default those of the program's own milestone.
     #[arg(long, value_name = "SUITE")]
     pub(super) suite: Option<String>,
     /// The wrong step of the scene to begin with, from 1; by default the first one that shows the cause alone.
@@ -390,7 +390,7 @@ pub(super) struct PageArguments {
     /// The suite of a course, with its scenes, to put inside.
     #[arg(long, value_name = "SUITE")]
     pub(super) suite: Option<String>,
-    /// The page's readers: nothing of what the suite hides from students is in theirs.
+    /// The page's readers. A page for students contains nothing that the suite hides from them.
     #[arg(
         long = "for",
         value_parser = reader(),

@@ -56,7 +56,7 @@ pub(in crate::cli) struct SceneExportArguments {
     /// Replace files that hold something else.
     #[arg(long)]
     pub(in crate::cli) force: bool,
-    /// Say nothing but what went wrong.
+    /// Print errors only.
     #[arg(short, long)]
     pub(in crate::cli) quiet: bool,
 }

@@ -8,7 +8,7 @@ use std::str::FromStr;
 
 /// Returns a count that can't be zero.
 pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
-    word.trim().parse().map_err(|_| "it is a whole number, 1 or more")
+    word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
 }
 
 /// How a report is written.
@@ -74,7 +74,7 @@ pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> 
 /// Returns the reader of a page.
 pub(in crate::cli) fn reader() -> impl TypedValueParser<Value = Audience> {
     one_of(&[
-        ("staff", Audience::Staff, "Staff, or a student at their own machine: everything, of every group"),
-        ("student", Audience::Student, "The student: what the suite's hints and its visible groups let them know"),
+        ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),
+        ("student", Audience::Student, "The student: what the suite's hints and its visible groups show"),
     ])
 }

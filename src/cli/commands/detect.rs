@@ -100,7 +100,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     if matches!(scene.scene.collision, Collision::Simple { .. }) {
         let found = OverlapStudy::for_pair(&scene.scene, step, &before, pair);
         let study =
-            found.map_err(|error| anyhow::Error::msg(no_result(&error)))?.context("nobody asks about this pair")?;
+            found.map_err(|error| anyhow::Error::msg(no_result(&error)))?.context("detection never tests this pair")?;
         let (scene, trace) = (scene.name.as_str(), traced.as_ref().map(|traced| traced.name.as_str()));
         let logged = traced.as_ref().map(|traced| traced.end.impulses.iter().any(|logged| logged.pair() == Some(pair)));
         return print(arguments, &Overlap { study: &study, scene, trace, step, pair, logged }, &inputs);

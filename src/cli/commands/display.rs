@@ -89,7 +89,7 @@ impl<'a> LiveDisplay<'a> {
     }
 }
 
-/// How many scenes have their verdict, in a file for programs that wait.
+/// The number of scenes that have their verdict, in a file for programs that wait.
 pub(super) struct Counter {
     place: Place,
     /// Whether a scene of the plan counts.

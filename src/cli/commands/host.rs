@@ -51,7 +51,7 @@ pub(super) fn doctor() -> Result<u8> {
     text += if safe {
         "\nPrograms can be graded safely on this machine.\n"
     } else {
-        "\nA required layer is missing: `grade` refuses unless --unsafe-no-sandbox is given.\n"
+        "\nA required layer is missing: `grade` runs no program without --unsafe-no-sandbox.\n"
     };
     console::report(&text)?;
     Ok(if safe { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
@@ -117,7 +117,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         console::print("The right sample is accepted, the wrong one is not: everything works on this machine.\n")?;
         if let Some(grade) = &last {
             output::write(&arguments.output, pages.render_one(grade, None, Audience::Staff).as_bytes())?;
-            let words = format!("What is wrong with it, to look at in a browser: {}\n", arguments.output.display());
+            let words = format!("The report on the wrong sample, for a browser: {}\n", arguments.output.display());
             console::print(&words)?;
         }
         Ok(exit::ACCEPTED)
@@ -132,9 +132,8 @@ fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
         bail!("there is no mistake '{unknown}'; fosssim-sample --list lists them");
     }
     let bytes = files::read(sample, LARGEST_PROGRAM).with_context(|| format!("cannot read {}", sample.display()))?;
-    let flawed = pin::write(&bytes, mistake).with_context(|| {
-        format!("{} is another version of the sample than this program's, or none", sample.display())
-    })?;
+    let flawed =
+        pin::write(&bytes, mistake).with_context(|| format!("{} is not this version's sample", sample.display()))?;
     output::write(program, &flawed)?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
         .with_context(|| format!("cannot make {} executable", program.display()))?;

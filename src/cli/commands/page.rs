@@ -36,7 +36,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
         ),
     };
     if !module.starts_with(MAGIC) {
-        bail!("the module is no WebAssembly; scripts/browser-page makes one");
+        bail!("the module is not WebAssembly; scripts/browser-page makes one");
     }
     let course = arguments.suite.as_deref().map(|name| course(name, arguments.reader)).transpose()?;
     let target = Output::create(&arguments.output, &inputs)?;

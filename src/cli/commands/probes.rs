@@ -67,7 +67,7 @@ pub(super) struct ExaminedProgram {
     pub(super) cards: Vec<Option<Card>>,
     /// The scene of each case.
     pub(super) tasks: Vec<SceneTask>,
-    /// How the program ended on each, and the number of complete steps.
+    /// The way the program ended on each, and the number of complete steps.
     pub(super) ends: Vec<(RunEnd, u32)>,
 }
 

@@ -22,7 +22,7 @@ const CLASS_WIDTH: usize = 100;
 pub(super) struct Report {
     pub(super) format: Format,
     pub(super) name: String,
-    /// Where it goes; to standard output without.
+    /// The place where it goes; to standard output without.
     pub(super) file: Option<PathBuf>,
 }
 
@@ -121,9 +121,7 @@ impl Results<'_> {
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
-            console::complain(
-                "a part of the suite is not a grade: grades.csv and the other tables are left as they are\n",
-            );
+            console::complain("a part of the suite is not a grade: grades.csv and the other tables are not changed\n");
         } else if let Some(folder) = self.folder {
             let by_submission = || grade::csv_of_submissions(grades, passed_over);
             let by_scene = || Format::Csv.render_class(grades, passed_over);

@@ -30,7 +30,7 @@ fn list(patterns: &[String], quiet: bool) -> Result<()> {
     let mut scenes = Vec::new();
     for name in names {
         let xml = library::scene(name).context("a scene that was just listed")?;
-        let loaded = scene::read(name, xml).map_err(|_| anyhow::anyhow!("the embedded scene {name} is not sound"))?;
+        let loaded = scene::read(name, xml).map_err(|_| anyhow::anyhow!("the embedded scene {name} is not valid"))?;
         scenes.push((name, loaded.scene));
     }
     console::report(&report::list(&scenes, console::style()))

@@ -7,7 +7,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
     let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
     if !server.is_file() {
         bail!(
-            "there is no {}: build it with `cargo install --path crates/server --locked`, or beside this program with \
+            "there is no {}: build it with `cargo install --path crates/server --locked`, or next to this program with \
             `cargo build --release -p fosssim-server`",
             server.display()
         );

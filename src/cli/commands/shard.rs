@@ -32,7 +32,7 @@ pub(super) struct SharedInputs {
     version: String,
     /// The grader itself, digested: two builds of one version may judge differently.
     grader: String,
-    /// How many shards there are.
+    /// The number of shards.
     pub(super) of: usize,
     /// The suite's name.
     pub(super) suite: String,

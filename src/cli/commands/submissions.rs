@@ -21,7 +21,7 @@ const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
 /// The folders in it.
 const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
-/// Why a folder of results is no submission.
+/// The reason why a folder of results is no submission.
 const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 
 /// A class has no more entries.
@@ -35,7 +35,7 @@ pub(super) struct FoundSubmissions {
 
 /// A submission that has no name yet.
 struct Entry {
-    /// Where it lies.
+    /// The place where it lies.
     path: PathBuf,
     /// The folder, or the file itself.
     folder: PathBuf,

@@ -54,7 +54,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
         0 => String::new(),
         notes => format!("; {} above", counted(notes as u64, "note")),
     };
-    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is sound"), size(plan));
+    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is valid"), size(plan));
     text
 }
 
@@ -107,7 +107,7 @@ fn counted_points(value: f64) -> String {
 /// Returns the meaning of the choice of rule books.
 const fn rules(rules: Rules) -> &'static str {
     match rules {
-        Rules::Parity => "parity: the original's verdict counts, the fair rules are not asked",
+        Rules::Parity => "parity: the original's verdict counts, the fair rules are not applied",
         Rules::Fair => "fair: the fair rules' verdict counts",
         Rules::Both => "both: the original's verdict counts, reports say where the fair rules differ and why",
     }

@@ -76,7 +76,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
         PairKind::ParticleEdge => {
             let edge = &scene.edges[second as usize];
             if [edge.first, edge.second].contains(&(first as usize)) {
-                bail!("particle {first} is an end of edge {second}; detection never looks at this pair");
+                bail!("particle {first} is an end of edge {second}; detection never tests this pair");
             }
             Ok(Pair { kind, first, second })
         }

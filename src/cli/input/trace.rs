@@ -87,7 +87,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     } else {
         // A slip of the user, and no wrong trace: refused where name and content agree.
         if is_scene(name) {
-            bail!("{shown} is a scene and no trace: SCENE comes first, then TRACE");
+            bail!("{shown} is a scene, not a trace: SCENE comes first, then TRACE");
         }
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;

@@ -47,7 +47,7 @@ fn a_scene_in_the_place_of_the_trace_is_told_in_one_line() {
     for command in [&["check", "scene.xml", "scene.xml"][..], &["trace", "info", "scene.xml", "scene.xml"]] {
         let run = workspace.run(command);
         assert_eq!((run.code, run.err().lines().count()), (Some(2), 1), "{}", run.shown());
-        assert!(run.err().contains("scene.xml is a scene and no trace"), "{}", run.err());
+        assert!(run.err().contains("scene.xml is a scene, not a trace"), "{}", run.err());
     }
     // Any other file of such a name is a trace, if a bad one.
     workspace.write("odd.xml", "no scene");
@@ -92,9 +92,9 @@ fn names_of_files_give_the_terminal_no_orders() {
 fn counts_and_scenes_that_make_no_sense_are_told_in_plain_words() {
     let workspace = Workspace::with_trace(DRIFT);
     for (words, says) in [
-        (&["check", "scene.xml", "trace.bin", "--threads", "0"][..], "it is a whole number, 1 or more"),
-        (&["render", "scene.xml", "--output", "x.gif", "--every", "0"], "it is a whole number, 1 or more"),
-        (&["grade", "x", "--jobs", "many"], "it is a whole number, 1 or more"),
+        (&["check", "scene.xml", "trace.bin", "--threads", "0"][..], "it must be a whole number, 1 or more"),
+        (&["render", "scene.xml", "--output", "x.gif", "--every", "0"], "it must be a whole number, 1 or more"),
+        (&["grade", "x", "--jobs", "many"], "it must be a whole number, 1 or more"),
         (&["check", "-", "trace.bin"], "a scene is read from a file"),
         (&["render", "scene.xml", "--format", "gif", "--output", "/dev/full"], "cannot write /dev/full: "),
     ] {

@@ -173,9 +173,9 @@ pub enum StageDetail {
     Passes {
         /// How many there should be.
         expected: usize,
-        /// How many there are.
+        /// The number of them.
         actual: usize,
-        /// How many rounds the scene allows.
+        /// The number of rounds that the scene allows.
         most: i32,
     },
     /// The changes by isolated contacts.
@@ -195,10 +195,10 @@ pub enum StageDetail {
     OfZones {
         /// The number.
         count: usize,
-        /// The number that could be compared.
+        /// The number of zones that could be compared.
         of: usize,
     },
-    /// Velocities of zones that have to stop, over those before.
+    /// Velocities of zones that must stop, divided by those before.
     Stopped(Ratios),
     /// How far the center of mass moves, over how far it should.
     CenterMoves(Ratios),

@@ -44,7 +44,7 @@ pub enum ExamplePlace {
     },
     /// The polynomial with this number in the step's list, of which the reference has none.
     NumberedPolynomial(usize),
-    /// How many polynomials there are.
+    /// The number of polynomials.
     PolynomialCount,
     /// A contact, as the trace names it: normal and time.
     Contact {
@@ -55,7 +55,7 @@ pub enum ExamplePlace {
         /// The other object.
         second: i32,
     },
-    /// How many contacts there are.
+    /// The number of contacts.
     ContactCount,
     /// A particle in a record: position and velocity.
     Particle {

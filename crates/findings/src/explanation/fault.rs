@@ -215,7 +215,7 @@ pub struct ChangedQuantity {
 /// A quantity of a body in a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Quantity {
-    /// Where it is.
+    /// The place where it is.
     Position,
     /// How fast it moves.
     Velocity,
@@ -255,7 +255,7 @@ pub enum WrongPositions {
     BeforeFailsafe,
 }
 
-/// Why impulse rounds end.
+/// The reason why impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
     /// All that there may be were made.

@@ -30,10 +30,10 @@ fn every_problem_is_told_with_its_position() {
     3:9: rules "kind" is not known: there are "parity", "fair" and "both"
     4:7: run has no {program}: the program would not get it
     4:7: run has no {trace}: the program would not get it
-    4:7: run has to begin with {program}
-    6:15: cpu_seconds is -1: it has to lie between 0.01 and 86400
+    4:7: run must begin with {program}
+    6:15: cpu_seconds is -1: it must be between 0.01 and 86400
     9:10: group "a" has no scenes
-    10:10: points is -5: it has to lie between 0 and 1000000
+    10:10: points is -5: it must be between 0 and 1000000
     "#);
 }
 
@@ -72,18 +72,18 @@ fn unknown_keys_and_bad_values_are_told_all_at_once_with_what_follows_from_the_r
         "3:9: rules \"Fair!\" is not known: there are \"parity\", \"fair\" and \"both\"; did you mean \"fair\"?",
         "4:9: hints \"half\" is not known: there are \"none\", \"where\", \"what\" and \"full\"",
         "5:15: show_output must be true or false, not an integer",
-        "6:1: unknown key `cpu_seconds` in the suite: it belongs into [limits]",
+        "6:1: unknown key `cpu_seconds` in the suite: it belongs in [limits]",
         "7:7: run must be a list of texts, [\"...\"], not a string",
         "9:1: unknown key `cpu-second` in [limits]: did you mean `cpu_seconds`?",
         "10:14: memory_mib must be a number, not a string",
-        "11:9: files is NaN: it has to lie between 1 and 1000000",
+        "11:9: files is NaN: it must be between 1 and 1000000",
         "13:1: unknown key `comand` in [build]: did you mean `command`?",
         "build.program \"../x\" must be a path inside the submission's folder",
         "16:1: unknown key `nam` in this [[group]]: did you mean `name`?",
         "17:25: each of scenes must be a text in quotes, not an integer",
         "18:10: credit \"step\" is not known: there are \"scenes\", \"steps\" and \"all\"; did you mean \"steps\"?",
         "21:10: group \"b\" has no scenes",
-        "22:10: points is -1: it has to lie between 0 and 1000000",
+        "22:10: points is -1: it must be between 0 and 1000000",
         "23:1: unknown key `weight` in this [[group]]: there are name, scenes, points, extra, credit",
     ] {
         assert!(told.contains(line), "{line}\n{told}");
@@ -100,5 +100,8 @@ fn broken_lines_are_told_and_nothing_that_follows_from_them() {
     // An integer that no reader takes is out of its range, and the rest of the suite is still there.
     let large = "schema = 1\nname = \"a\"\n[[group]]\nname = \"b\"\nscenes = [\"a\"]\npoints = 99999999999999999999\n";
     let told = read(large).expect_err("too many").to_string();
-    assert!(told.contains("6:10: points is 100000000000000000000: it has to lie") && !told.contains("[["), "{told}");
+    assert!(
+        told.contains("6:10: points is 100000000000000000000: it must be between") && !told.contains("[["),
+        "{told}"
+    );
 }

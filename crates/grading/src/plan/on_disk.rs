@@ -13,12 +13,12 @@ pub const MOST_SCENES: usize = 10_000;
 /// See [`MOST_SCENES`].
 pub const MOST_SCENE_BYTES: u64 = 256 << 20;
 
-/// Why there is no plan: no such suite, a file that can't be read, or everything that is wrong with it.
+/// The reason why there is no plan: no such suite, a file that can't be read, or everything that is wrong with it.
 #[derive(Debug, thiserror::Error)]
 #[error("{words}")]
 pub struct FindError {
     words: String,
-    /// Why a file can't be read.
+    /// The reason why a file can't be read.
     #[source]
     why: Option<io::Error>,
 }
@@ -57,7 +57,7 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
             })?;
             if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
                 let advice = "a group of a suite lists it in its `scenes`";
-                return Err(format!("{name} is a scene and no suite: {advice}").into());
+                return Err(format!("{name} is a scene, not a suite: {advice}").into());
             }
             load(&text, beside)
         }
@@ -91,15 +91,18 @@ fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Matching
         let name = relative.with_extension("").to_string_lossy().into_owned();
         let xml = scene_file(&path)?;
         room.scenes = room.scenes.checked_sub(1).ok_or_else(|| {
-            format!("pattern {pattern} takes the suite beyond {MOST_SCENES} scenes, which is the limit")
+            format!("with pattern {pattern} the suite has more than {MOST_SCENES} scenes, which is the limit")
         })?;
         room.bytes = room.bytes.checked_sub(xml.len() as u64).ok_or_else(|| {
-            format!("pattern {pattern} takes the suite's scenes beyond {MOST_SCENE_BYTES} bytes, which is the limit")
+            format!(
+                "with pattern {pattern} the suite's scenes have more than {MOST_SCENE_BYTES} bytes, which is the \
+                limit"
+            )
         })?;
         found.push((name, xml));
     }
     if found.is_empty() {
-        return Err(format!("no scene file matches {pattern} (files are looked up beside the suite)"));
+        return Err(format!("no scene file matches {pattern} (files are looked up next to the suite)"));
     }
     Ok(found)
 }
@@ -130,8 +133,8 @@ mod tests {
             found.map(|found| found.len())
         };
         assert_eq!(found("*.xml", 3, 24), Ok(3));
-        assert!(found("*.xml", 2, 24).expect_err("one too many").contains("beyond 10000 scenes"));
-        assert!(found("*.xml", 3, 23).expect_err("too large").contains("beyond 268435456 bytes"));
+        assert!(found("*.xml", 2, 24).expect_err("one too many").contains("more than 10000 scenes"));
+        assert!(found("*.xml", 3, 23).expect_err("too large").contains("more than 268435456 bytes"));
         std::fs::File::create(folder.path().join("hole")).expect("a file").set_len(1 << 40).expect("a hole");
         std::os::unix::fs::symlink("/dev/zero", folder.path().join("zero")).expect("a link");
         assert!(found("hole", 3, 24).expect_err("a hole").contains("too large for a scene"));

@@ -65,7 +65,7 @@ impl FolderResults {
         let metadata = file.metadata().map_err(at(JOURNAL))?;
         if metadata.len() > LARGEST_JOURNAL && !fresh {
             let text =
-                format!("it has more than {LARGEST_JOURNAL} bytes, which no journal has; --fresh begins a new one");
+                format!("it has more than {LARGEST_JOURNAL} bytes, the limit of a journal; --fresh begins a new one");
             return Err(at(JOURNAL)(io::Error::other(text)));
         }
         let mut found = BTreeMap::new();
@@ -90,7 +90,7 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     folder.own_file(name).map_err(|error| match error {
         FileError::System { source, .. } => source,
         FileError::NotRegular { what, .. } => {
-            io::Error::other(format!("it is {what} and no file of the grader's: remove it"))
+            io::Error::other(format!("it is {what}, not a file of the grader: remove it"))
         }
         error => io::Error::other(error),
     })
@@ -128,8 +128,8 @@ pub fn each_line<E: From<io::Error>>(
             return Ok(());
         } else {
             let text = format!(
-                "it has a line of more than {LONGEST_LINE} bytes, which no result has: remove it, and its results are \
-                made anew"
+                "it has a line of more than {LONGEST_LINE} bytes, the limit of a result: remove it, and its scenes \
+                 are graded again"
             );
             return Err(io::Error::other(text).into());
         }

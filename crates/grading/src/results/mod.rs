@@ -22,7 +22,7 @@ pub trait Results: Sync {
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError>;
 }
 
-/// Why a result can't be kept: always ours or the machine's fault.
+/// The reason why a result can't be kept: always ours or the machine's fault.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct KeepError(pub String);

@@ -24,8 +24,8 @@ pub(crate) struct Judging {
     scales: Scales,
     /// The factors that single coefficients claim.
     claimed: Scales,
-    /// How many polynomials are the reference's bit for bit; approaches, which say nothing of objects at rest, count
-    /// once a step.
+    /// The number of polynomials that are the reference's bit for bit; approaches, which say nothing of objects at
+    /// rest, count once a step.
     same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
     /// Polynomials that hang on the program's factors, step by step.
     pending: Vec<PendingOfStep>,

@@ -15,7 +15,7 @@ pub(crate) struct Pending {
     pub form: Form,
     /// Whether they claim factors of their own, and show none.
     pub is_claim: bool,
-    /// How many there are in the step.
+    /// The number of them in the step.
     pub count: u64,
     /// The greatest of the least factors that they need, and what is wrong otherwise.
     pub least: (f64, Finding),

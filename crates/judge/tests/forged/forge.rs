@@ -321,9 +321,9 @@ impl Change {
     }
 }
 
-/// Why a polynomial that is not the program's may pass, whatever others say: it is zero but for round-off and has
-/// numbers, so it may be anything; or it is right with the program's factor; or it is right with a factor that two of
-/// its coefficients agree on, or that takes nothing from it.
+/// The reason why a polynomial that is not the program's may pass, whatever others say: it is zero but for round-off
+/// and has numbers, so it may be anything; or it is right with the program's factor; or it is right with a factor that
+/// two of its coefficients agree on, or that takes nothing from it.
 fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
     let of_form = |expected: &[BoundedValue]| {
         let scaled: Vec<BoundedValue> =

@@ -203,7 +203,7 @@ pub enum ImpulseList {
     Responses,
 }
 
-/// The coefficients that are dropped of a polynomial before its zeros are searched, and when one is read from a trace.
+/// The coefficients that are dropped from a polynomial before its zeros are searched, and when a trace is read.
 ///
 /// Code that takes a rule for granted says so ([`drops_leading`](crate::drops_leading)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

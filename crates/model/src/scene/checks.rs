@@ -126,7 +126,7 @@ fn fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.particles.iter().enumerate() {
         if part.value.as_ref().is_some_and(|particle| particle.fixed && particle.velocity != Vec2::zeros()) {
             report.warning(|| {
-                let help = "the response to half-planes does not ask whether a particle is fixed";
+                let help = "the response to half-planes does not check whether a particle is fixed";
                 about(part.tag, format!("particle {number} is fixed but moves, and half-planes will reflect it"), help)
             });
         }

@@ -208,7 +208,7 @@ impl<'t> DocumentReader<'t, '_> {
                 (_, true) => (format!("a second root element `{}`", quote(name)), "only the first `scene` counts"),
                 (_, false) => (
                     format!("the root element is `{}`, not `scene`", quote(name)),
-                    "everything stands in one element `scene`",
+                    "put everything into one element `scene`",
                 ),
             };
             self.report.error(|| Problem::from_element(name, span, message).help(help));
@@ -305,7 +305,7 @@ fn syntax_words(error: SyntaxError) -> (String, Option<String>) {
         SyntaxError::UnclosedCData => ("a CDATA section without end", "end it with `]]>`"),
         SyntaxError::UnclosedTag => ("a tag without end", "end it with `>` or `/>`"),
         SyntaxError::UnclosedSingleQuotedAttributeValue | SyntaxError::UnclosedDoubleQuotedAttributeValue => {
-            ("a quotation mark is missing in this tag or behind it", "close every value")
+            ("a quotation mark is missing in this tag or after it", "close every value")
         }
     };
     (message.to_owned(), Some(help.to_owned()))

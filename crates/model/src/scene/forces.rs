@@ -8,7 +8,7 @@ use fosssim_num::vector::Vec2;
 
 /// The attributes of one element, as a reader takes them.
 pub(super) trait Source {
-    /// Why an attribute can't be used.
+    /// The reason why an attribute can't be used.
     type Error;
     /// Returns the index of an edge.
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;

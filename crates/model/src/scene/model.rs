@@ -251,7 +251,7 @@ pub struct Color {
 pub struct ParticlePath {
     /// The particle.
     pub particle: usize,
-    /// How long the trail lasts, seconds.
+    /// The time that the trail lasts, seconds.
     pub duration: f64,
     /// The path's color.
     pub color: Color,

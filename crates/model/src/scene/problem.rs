@@ -46,7 +46,7 @@ impl fmt::Display for Problem {
     }
 }
 
-/// Why a scene was refused: its errors and warnings in the order of their places.
+/// The reason why a scene was refused: its errors and warnings in the order of their places.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problems {
     /// The scene's name, as the caller gave it.

@@ -42,7 +42,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
     if document.scene.is_none() {
         if !document.broken && !document.other_root {
             report.error(|| {
-                Problem::new(0..0, "the file has no `scene`").help("everything stands between `<scene>` and `</scene>`")
+                Problem::new(0..0, "the file has no `scene`").help("put everything between `<scene>` and `</scene>`")
             });
         }
     } else if let Some(parts) = xml::read(&document, &mut report) {

@@ -154,10 +154,10 @@ fn what_is_missing() {
         "<collision COR='1'/>",
         "4:1: collision has no `type` (required: `none`, `simple`, `penalty`, `continuous-time` and `hybrid`)",
     );
-    assert_eq!(judged(""), "1:1: the file has no `scene` (everything stands between `<scene>` and `</scene>`)");
+    assert_eq!(judged(""), "1:1: the file has no `scene` (put everything between `<scene>` and `</scene>`)");
     assert_eq!(
         judged("<world><duration/></world>"),
-        "1:1: the root element is `world`, not `scene` (everything stands in one element `scene`)"
+        "1:1: the root element is `world`, not `scene` (put everything into one element `scene`)"
     );
     assert_eq!(
         judged(&format!("<Scene>{START}{TWO}<foo/></Scene>")),
@@ -188,11 +188,11 @@ fn what_is_there_twice() {
 fn indices() {
     says(
         "<edge i='0' j='2'/>",
-        "4:16: `j` of edge 0 is 2, which is no particle (allowed is 0 to 1; numbering starts at 0)",
+        "4:16: `j` of edge 0 is 2, but there is no such particle (allowed is 0 to 1; numbering starts at 0)",
     );
     says(
         "<edge i='-1' j='1'/>",
-        "4:10: `i` of edge 0 is -1, which is no particle (allowed is 0 to 1; numbering starts at 0)",
+        "4:10: `i` of edge 0 is -1, but there is no such particle (allowed is 0 to 1; numbering starts at 0)",
     );
     says("<edge i='1' j='1'/>", "4:16: `j` of edge 0 is the same particle as `i` (two different particles are needed)");
     // An unreadable index says nothing about the other one.
@@ -200,28 +200,34 @@ fn indices() {
     for (inner, words) in [
         (
             "<springforce edge='0' k='1' l0='1'/>",
-            "4:20: `edge` of springforce 0 is 0, which is no edge (there is no edge)",
+            "4:20: `edge` of springforce 0 is 0, but there is no such edge (there is no edge)",
         ),
         (
             "<gravitationalforce i='0' j='9' G='1'/>",
-            "4:30: `j` of gravitationalforce 0 is 9, which is no particle (allowed is 0 to 1; numbering starts at 0)",
+            "4:30: `j` of gravitationalforce 0 is 9, but there is no such particle (allowed is 0 to 1; numbering \
+             starts at 0)",
         ),
         (
             "<vortexforce i='9' j='0' kbs='1' kvc='1'/>",
-            "4:17: `i` of vortexforce 0 is 9, which is no particle (allowed is 0 to 1; numbering starts at 0)",
+            "4:17: `i` of vortexforce 0 is 9, but there is no such particle (allowed is 0 to 1; numbering starts at 0)",
         ),
         (
             "<particlecolor i='2' r='0' g='0' b='0'/>",
-            "4:19: `i` of particlecolor 0 is 2, which is no particle (allowed is 0 to 1; numbering starts at 0)",
+            "4:19: `i` of particlecolor 0 is 2, but there is no such particle (allowed is 0 to 1; numbering starts at \
+             0)",
         ),
-        ("<edgecolor i='0' r='0' g='0' b='0'/>", "4:15: `i` of edgecolor 0 is 0, which is no edge (there is no edge)"),
+        (
+            "<edgecolor i='0' r='0' g='0' b='0'/>",
+            "4:15: `i` of edgecolor 0 is 0, but there is no such edge (there is no edge)",
+        ),
         (
             "<halfplanecolor i='0' r='0' g='0' b='0'/>",
-            "4:20: `i` of halfplanecolor 0 is 0, which is no half-plane (there is no half-plane)",
+            "4:20: `i` of halfplanecolor 0 is 0, but there is no such half-plane (there is no half-plane)",
         ),
         (
             "<particlepath i='2' duration='1' r='0' g='0' b='0'/>",
-            "4:18: `i` of particlepath 0 is 2, which is no particle (allowed is 0 to 1; numbering starts at 0)",
+            "4:18: `i` of particlepath 0 is 2, but there is no such particle (allowed is 0 to 1; numbering starts at \
+             0)",
         ),
     ] {
         says(inner, words);
@@ -255,7 +261,7 @@ fn values_that_make_no_sense() {
     says("<collision type='hybrid' maxiters='0'/>", "fine");
     says(
         "<collision type='simple' COR='2' k='1'/>",
-        "fine\n4:31: warning: `COR` of collision is `2` (a coefficient of restitution lies between 0 and 1)\n\
+        "fine\n4:31: warning: `COR` of collision is `2` (a coefficient of restitution must be between 0 and 1)\n\
          4:37: warning: `k` of collision has no effect (this type of collision handling does not use it)",
     );
     says(
@@ -352,8 +358,8 @@ fn methods_that_do_not_go_together() {
     says(
         "<particle px='9' py='9' vx='0' vy='1' m='1' fixed='1'/><collision type='simple'/>\
          <halfplane px='0' py='-5' nx='0' ny='1'/>",
-        "fine\n4:1: warning: particle 2 is fixed but moves, and half-planes will reflect it (the response to half-planes \
-         does not ask whether a particle is fixed)",
+        "fine\n4:1: warning: particle 2 is fixed but moves, and half-planes will reflect it (the response to \
+         half-planes does not check whether a particle is fixed)",
     );
     let many: String =
         (0..4097).map(|x| format!("<particle px='{x}' py='9' vx='0' vy='0' m='1' fixed='0'/>")).collect();
@@ -401,7 +407,7 @@ fn broken_tags() {
     );
     says("<dragdamping\r\nb='1'/><dragdamping\n b='1'/><dragdamping b='1'\n/><maxsimfreq max='1'\n/>", "fine");
     says("< dragdamping b='1'/>", "4:1: no element name after `<`");
-    says("<dragdamping b='1/>", "4:1: a quotation mark is missing in this tag or behind it (close every value)");
+    says("<dragdamping b='1/>", "4:1: a quotation mark is missing in this tag or after it (close every value)");
 }
 
 #[test]

@@ -267,7 +267,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
-        fields.odd("COR", "a coefficient of restitution lies between 0 and 1");
+        fields.odd("COR", "a coefficient of restitution must be between 0 and 1");
     }
     let kind = fields.choice("type", &types)?;
     let used: &[&str] = match kind {

@@ -40,7 +40,7 @@ impl Bodies {
         for (index, edge) in scene.edges.iter().enumerate() {
             assert!(
                 edge.first < particles.len() && edge.second < particles.len(),
-                "edge {index} has an endpoint that is no particle"
+                "edge {index} has an endpoint that is not a particle"
             );
         }
         Self {

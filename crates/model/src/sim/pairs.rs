@@ -7,7 +7,7 @@ use super::pair::{ByKind, Pair, PairKind, pair};
 use crate::scene::Scene;
 use std::{cmp::Ordering, ops::Range};
 
-/// How many objects there are of which pairs consist.
+/// The number of objects of which pairs consist.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Objects {
     /// Number of particles.

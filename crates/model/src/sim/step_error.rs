@@ -1,8 +1,8 @@
-//! Why a step has no result.
+//! The reason why a step has no result.
 use super::pair::Pair;
 use serde::{Deserialize, Serialize};
 
-/// Why a step has no result. The original hangs or goes on with garbage here.
+/// The reason why a step has no result. The original hangs or goes on with garbage here.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum StepError {
     /// The root search of a pair would never end: its polynomials hold values that are not finite.

@@ -113,7 +113,7 @@ impl LenientFrame {
     }
 }
 
-/// Why the original goes no further.
+/// The reason why the original goes no further.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{at}")]
 pub struct ReadStop {

@@ -230,7 +230,7 @@ impl fmt::Display for Summary {
             writeln!(f, "  {steps:<12} {digest}")?;
         }
         if *unread {
-            return writeln!(f, "sha256         unknown, for not all bytes were read");
+            return writeln!(f, "sha256         unknown, because not all bytes were read");
         }
         writeln!(f, "sha256         {sha256}")
     }

@@ -31,7 +31,7 @@ const _: () = assert!(CONVERSION >= 2.0 * ROUNDINGS as f64 * UNIT_ROUNDOFF, "the
 pub(crate) struct ExactPolynomial {
     /// Coefficients, lowest power first; zeros behind `length`.
     pub(crate) coefficients: [f64; MAX_COEFFICIENTS],
-    /// How many there are.
+    /// The number of them.
     pub(crate) length: usize,
     /// Sum of the original coefficients' bounds: the greatest change by one unit within `[0, 1]`, divided by `u`.
     pub(crate) bound: f64,
@@ -42,7 +42,7 @@ pub(crate) struct ExactPolynomial {
 pub(crate) struct Control {
     /// The coefficients.
     pub(crate) values: [f64; MAX_COEFFICIENTS],
-    /// How many there are.
+    /// The number of them.
     pub(crate) length: usize,
     /// By how much each may be off.
     pub(crate) error: f64,

@@ -93,7 +93,7 @@ struct Attempt<'a> {
     by_zero: Measure,
 }
 
-/// Where the chain of iterations stands.
+/// The place where the chain of iterations stands.
 enum Stage {
     Quadratic,
     Linear,

@@ -16,7 +16,7 @@ pub struct PlottedPolynomial<'a> {
     pub coefficients: &'a [f64],
     /// The polynomial's real zeros.
     pub zeros: Vec<f64>,
-    /// Where it is positive.
+    /// The place where it is positive.
     pub positive: &'a [Interval],
 }
 

@@ -55,7 +55,7 @@ impl Ink {
     }
 }
 
-/// Where a text stands relative to its place.
+/// The place where a text stands relative to its place.
 #[derive(Debug, Clone, Copy)]
 pub enum Anchor {
     Start,

@@ -66,7 +66,7 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
         ],
         FindingDetail::PolynomialCount { actual: 0, .. } => &[
             "the detection: in this step it never calls the course's root finder; is it written yet?",
-            "it must ask about every pair in every pass, even about pairs that are far apart",
+            "it must test every pair in every pass, even pairs that are far apart",
         ],
         FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. }
             if actual > expected =>
@@ -132,7 +132,7 @@ const fn pair_advice(is_doubled: bool) -> &'static [&'static str] {
     match is_doubled {
         false => &[
             "the search for near pairs: it leaves this pair out",
-            "its bounds have to hold the radii and the thickness, and each body is in every cell that it reaches",
+            "its bounds must include the radii and the thickness, and each body must be in every cell that it reaches",
         ],
         true => &["the search for near pairs: it finds this pair twice, and the force is applied each time"],
     }

@@ -236,7 +236,7 @@ view! {
     }
 }
 
-/// Why judging stopped early.
+/// The reason why judging stopped early.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct StopView {

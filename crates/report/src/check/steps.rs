@@ -31,7 +31,7 @@ struct Step {
     number: u32,
     /// The first finding of each kind.
     firsts: Vec<Finding>,
-    /// How many there are besides.
+    /// The number of them besides.
     more: FindingCounts,
 }
 
@@ -170,7 +170,7 @@ fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
     let sound = outcome.steps_judged - outcome.damaged_steps;
     match step {
         0 if check.rules.ask_fair() => "First record: nothing is wrong".to_owned(),
-        0 => "First record: only the fair rules look at it".to_owned(),
+        0 => "First record: only the fair rules check it".to_owned(),
         _ if step <= sound => format!("Step {step} of {}: nothing is wrong", outcome.steps),
         _ if step <= outcome.steps_judged => {
             format!("Step {step} of {}: not checked, because the trace is damaged there or before", outcome.steps)

@@ -11,7 +11,7 @@ use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
 use std::{cmp::Ordering, collections::BTreeMap, fmt::Write};
 
-/// How many submissions were run on a scene, and how many of these it was accepted for.
+/// The number of submissions that were run on a scene, and how many of these it was accepted for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct SceneShare {
     pub(crate) accepted: usize,
@@ -24,7 +24,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));
     let (scenes, whole) = hardest(grades);
     if !scenes.is_empty() {
-        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes that fewest have right"));
+        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes with the fewest right answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
         for (scene, share) in scenes.iter().take(most) {
             let percent = 100 * share.accepted / share.run.max(1);
@@ -39,7 +39,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
             let _ = writeln!(text, "  and {}", counted((scenes.len() - most) as u64, "more scene"));
         }
         if whole > 0 {
-            let _ = writeln!(text, "  {} accepted for everybody", counted(whole as u64, "scene"));
+            let _ = writeln!(text, "  {} accepted for all", counted(whole as u64, "scene"));
         }
     }
     let mistakes = frequent(grades);
@@ -145,7 +145,7 @@ pub(crate) fn never_ran(grade: &Grade) -> bool {
     grade.scenes().all(|scene| matches!(scene.verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError))
 }
 
-/// Returns the scenes that are not accepted for everybody, those that fewest have right first, and how many others
+/// Returns the scenes that are not accepted for all, those that fewest have right first, and how many others
 /// there are. A scene that was not run, or on which the grader failed, does not count.
 pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();

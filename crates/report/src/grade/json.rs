@@ -69,7 +69,7 @@ view! {
         sandbox: Vec<String> = grade.layers.clone(),
         /// Weaknesses of the sandbox.
         warnings: Vec<String> = grade.warnings.iter().map(|warning| plain(warning)).collect(),
-        /// How the build ended; null where the suite builds nothing.
+        /// The way the build ended; null where the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
         /// The contents that the scenes have in common in which the program crashes or runs into a limit; null where
         /// nothing is known.
@@ -145,7 +145,7 @@ view! {
     struct BuildView from build: Build {
         /// Whether there is a program.
         succeeded: bool = build.end.is_success(),
-        /// How it ended, in words.
+        /// The way it ended, in words.
         end: String = plain(&words::build(&build.end)),
         /// The compiler's output, cut where it is long.
         output: String = printed(&build.output),

@@ -11,11 +11,13 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
     let reached = reached.map_or_else(|| "none yet".to_owned(), points);
     match source {
         SpeedSource::Measured(measured) => format!("{reached} {of}: {}", describe_ratio(marking, measured)),
-        SpeedSource::NotAccepted => format!("{reached} {of}: they begin when all scenes of the group are accepted"),
+        SpeedSource::NotAccepted => format!("{reached} {of}: they count only if all scenes of the group are accepted"),
         SpeedSource::Failed { scene, verdict } => {
-            format!("{reached} {of}: a timed run of {scene} ended otherwise than the graded one ({verdict})")
+            format!("{reached} {of}: a timed run of {scene} had another verdict than the graded one ({verdict})")
         }
-        SpeedSource::Unmeasured => format!("{reached} {of}: the time could not be measured, which is nobody's fault"),
+        SpeedSource::Unmeasured => {
+            format!("{reached} {of}: the time could not be measured, which is not the submission's fault")
+        }
         SpeedSource::Withheld => format!("{reached} {of}"),
     }
 }
@@ -24,8 +26,11 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
 fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));
-    let sure =
-        if high == low { "which changes no point".to_owned() } else { format!("which is {low} to {high} points") };
+    let sure = if high == low {
+        "which does not change the pointss".to_owned()
+    } else {
+        format!("which is {low} to {high} points")
+    };
     let rounds = counted(runs.into(), "round");
     let line = format!("all up to {}, none from {}", marking.full_at, marking.none_at);
     let spread = format!("{rounds} gave {least:.2} to {most:.2}, {sure}");
@@ -47,11 +52,11 @@ mod tests {
             "35 of 40 points for speed: 3.00 times the reference's processor time; 5 rounds gave 2.90 to 3.40, \
              which is 33 to 35.5 points (all up to 2, none from 10)"
         );
-        assert!(said(Some(40.0), measured(1.0, 0.9, 1.4)).contains("which changes no point"));
+        assert!(said(Some(40.0), measured(1.0, 0.9, 1.4)).contains("which does not change the pointss"));
         let failed = SpeedSource::Failed { scene: "a/b".to_owned(), verdict: Verdict::WrongAnswer };
         assert_eq!(
             said(Some(0.0), failed),
-            "0 of 40 points for speed: a timed run of a/b ended otherwise than the graded one (wrong answer)"
+            "0 of 40 points for speed: a timed run of a/b had another verdict than the graded one (wrong answer)"
         );
         assert!(said(None, SpeedSource::Unmeasured).starts_with("none yet of 40 points"));
         assert_eq!(said(Some(7.5), SpeedSource::Withheld), "7.5 of 40 points for speed");

@@ -253,13 +253,13 @@ impl ClassPage<'_> {
         )
     }
 
-    /// Scenes that not everybody has right.
+    /// Scenes that some have wrong.
     fn scenes(&self) -> String {
         let (scenes, whole) = hardest(self.grades);
         let mut out = String::from("<h2>Scenes by failure rate</h2>\n");
         if !scenes.is_empty() {
             let wrong = counted(scenes.len() as u64, "scene");
-            let _ = write!(out, "<details class=\"table\"><summary>{wrong} that not everybody has right</summary>");
+            let _ = write!(out, "<details class=\"table\"><summary>{wrong} that some have wrong</summary>");
             let headings = ["scene", "failed", "of", "rate"];
             out += &table("card scroll", "Scenes by failure rate", "sortable", &headings);
             for (scene, share) in scenes {
@@ -278,7 +278,7 @@ impl ClassPage<'_> {
         }
         match whole {
             0 => out,
-            whole => out + &format!("<p>{} accepted for everybody.</p>\n", counted(whole as u64, "scene")),
+            whole => out + &format!("<p>{} accepted for all.</p>\n", counted(whole as u64, "scene")),
         }
     }
 
@@ -296,7 +296,7 @@ impl ClassPage<'_> {
         let mut out = String::from("<h2>Where the rule books differ</h2>\n");
         let differing: Vec<&Grade> = self.grades.iter().filter(|grade| grade.differing() > 0).collect();
         if differing.is_empty() {
-            return out + "<p>Both rule books, as far as they were asked, agree on everything.</p>\n";
+            return out + "<p>The rule books agree wherever both were applied.</p>\n";
         }
         let headings = ["submission", "scenes", "why, with the number of scenes"];
         out += &table("card scroll", "Where the rule books differ", "sortable", &headings);
@@ -399,7 +399,7 @@ fn figures(grades: &[Grade]) -> String {
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", points(figures.max_points))),
         (median, "median, both of those that ran".to_owned()),
-        (unsolved.to_string(), "scenes that nobody has right".to_owned()),
+        (unsolved.to_string(), "scenes without a right answer".to_owned()),
     ];
     let since =
         figures.since.map(|(more, fewer)| (format!("{more} / {fewer}"), "more / fewer points than before".to_owned()));

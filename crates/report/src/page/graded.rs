@@ -318,11 +318,11 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
         (None, _) => out += &mistakes,
         (Some(card), Room::Words) if card.sizes().0 > 0 => {
             out += &mistakes;
-            out += "<p class=\"hint\">The pictures and the motion have no room on this page.</p>\n";
+            out += "<p class=\"hint\">This page has no room for the pictures and the motion.</p>\n";
         }
         (Some(card), _) => {
             if room == Room::Pictures && card.sizes().1 > 0 {
-                out += "<p class=\"hint\">The motion has no room on this page.</p>\n";
+                out += "<p class=\"hint\">This page has no room for the motion.</p>\n";
             }
             out += &card.html(&key, &mistakes);
         }
@@ -355,8 +355,8 @@ fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     let shown = text(&shown);
     if shown.len() > *room {
         *room = 0;
-        return "<p class=\"hint\">What programs printed in this scene and in the next ones has no room on this \
-            page.</p>\n"
+        return "<p class=\"hint\">This page has no room for the output of programs in this scene and the next \
+            ones.</p>\n"
             .to_owned();
     }
     *room -= shown.len();

@@ -12,7 +12,7 @@ const COLUMNS: usize = 480;
 pub(super) fn html(steps: &[Step]) -> String {
     let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(
-        "{} right, {} wrong by themselves, {} right but starting from where a wrong step has led{}",
+        "{} right, {} wrong by themselves, {} right but starting from a wrong state{}",
         of(StepClass::Right),
         of(StepClass::Wrong),
         of(StepClass::Inherited),

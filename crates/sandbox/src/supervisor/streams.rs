@@ -7,7 +7,7 @@ use std::{
 
 use crate::sys;
 
-/// At most this much is read at one go, so that a flood does not keep the supervisor from its other watches.
+/// The most bytes that are read in one call: a flood must not keep the supervisor from its other tasks.
 const AT_ONE_GO: usize = 1 << 20;
 
 /// One captured stream.

@@ -23,7 +23,8 @@ use crate::{
     wire::{self, Failure, RawBytes, RunOrder, stage},
 };
 
-/// Where the new root is put together: a folder that every Linux has. It is in sight again once the roots have changed.
+/// The place where the new root is put together: a folder that every Linux has. It is in sight again once the roots
+/// have changed.
 const SITE: &str = "/proc";
 /// The old root's name beneath the new one, for as long as it is needed.
 const HOST: &str = "/.host";
@@ -55,7 +56,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
             let real = real.ok_or(io::ErrorKind::NotFound)?;
             lay_out(&real, &on_host(&real), order)
         });
-        laid.map_err(stage("lay the working folder out in memory"))?;
+        laid.map_err(stage("put the working folder into memory"))?;
     }
     hide_own(order, Path::new("/"))?;
     add_processes(order)?;
@@ -94,7 +95,7 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
     lay_out(&real, &from, order)
         .and_then(|()| volatile::add(&real, files))
-        .map_err(stage("lay the working folder out in memory"))?;
+        .map_err(stage("put the working folder into memory"))?;
     hide_own(order, &real)?;
     close_root()
 }

@@ -19,7 +19,7 @@ pub(super) const UPLOADS: &str = "/api/v1/courses/bench/assignments/m1/submissio
 /// How often a student looks whether there is a grade, as a page does that hears nothing.
 const LOOK_EVERY: Duration = Duration::from_millis(500);
 
-/// How long the queue may take to empty between two rungs.
+/// The longest time that the queue may take to empty between two rungs.
 const REST: Duration = Duration::from_secs(120);
 
 /// The steps of students, in this order, again and again.

@@ -1,5 +1,5 @@
-//! How many students the service bears, and what hostile clients cost it: a server of its own on this machine, in a
-//! folder that goes away again. Prints a table.
+//! The number of students that the service bears, and what hostile clients cost it: a server of its own on this
+//! machine, in a folder that goes away again. Prints a table.
 //!
 //!     cargo bench -p fosssim-server -- ladder --students 50,100,200
 #![forbid(unsafe_code)]
@@ -56,7 +56,7 @@ pub(crate) enum Measurement {
     Ladder,
     /// 40 connections that read an upload of 120 MiB slowly.
     SlowReaders,
-    /// A million submissions, exported and given up.
+    /// A million submissions, exported and removed.
     Million,
 }
 

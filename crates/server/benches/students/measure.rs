@@ -1,7 +1,7 @@
 //! The measurements: how long answers took, and what server and machine spent meanwhile (from `/proc`).
 use std::{collections::BTreeMap, fs, time::Duration};
 
-/// How long each kind of request took, and how many failed.
+/// The time that each kind of request took, and how many failed.
 #[derive(Default)]
 pub(super) struct Times {
     pub(super) by_step: BTreeMap<&'static str, Vec<Duration>>,

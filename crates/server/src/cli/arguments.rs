@@ -45,7 +45,7 @@ pub(super) struct StorageArguments {
     /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
     pub(super) database: Option<Address>,
-    /// A bucket for artifacts instead of a folder in the data folder: s3://BUCKET/PREFIX. How to reach it stands in the
+    /// A bucket for artifacts instead of a folder in the data folder: s3://BUCKET/PREFIX. Its access is set by the
     /// usual variables, AWS_ACCESS_KEY_ID and so on.
     #[arg(long, value_name = "s3://BUCKET/PREFIX", env = "FOSSSIM_STORE")]
     pub(super) store: Option<String>,
@@ -57,13 +57,13 @@ pub(super) struct WorkloadArguments {
     /// Scenes of one grading at one time.
     #[arg(long, value_name = "N", default_value = "1")]
     pub(super) threads: NonZeroUsize,
-    /// The grader; by default the program fosssim-oracle beside this one.
+    /// The grader; by default the program fosssim-oracle next to this one.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) grader: Option<PathBuf>,
     /// After this many seconds without a sign of a worker its jobs are given to others.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) lease: u64,
-    /// A job that failed so often is given up.
+    /// The number of failures after which a job is given up.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=100))]
     pub(super) tries: u32,
 }
@@ -89,23 +89,23 @@ pub(super) struct ServiceArguments {
     /// After this many seconds of silence a request is given up.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
-    /// Up- and downloads of an account at one time.
+    /// Uploads and downloads of an account at one time.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) transfers: u32,
     /// The header in which the proxy in front names a client's address, such as XRealIp or RightmostXForwardedFor.
-    /// Without it limits by address hold for the other end of a connection: the proxy.
+    /// Without it limits by address apply to the other end of a connection: the proxy.
     #[arg(long, value_name = "HEADER", env = "FOSSSIM_CLIENT_ADDRESS")]
     pub(super) client_address: Option<ClientIpSource>,
-    /// MiB of uploads and reports that are kept of a person, in all courses; 0 for any number.
+    /// MiB of uploads and reports that are kept of a person, in all courses; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
     pub(super) keep_of_person: u64,
-    /// MiB of uploads and reports that are kept of a course; 0 for any number.
+    /// MiB of uploads and reports that are kept of a course; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 1024 * 1024)]
     pub(super) keep_of_course: u64,
-    /// MiB of uploads and reports that are kept in all; 0 for as many as there is room for.
+    /// MiB of uploads and reports that are kept in all; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 0)]
     pub(super) keep_in_all: u64,
-    /// With fewer MiB than this free on the data folder's disk uploads are refused, so that what was accepted can be
+    /// With fewer MiB than this free on the data folder's disk uploads are rejected, so that accepted ones can be
     /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
@@ -115,10 +115,10 @@ pub(super) struct ServiceArguments {
     /// For this many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
-    /// Let learning platforms be reached, and people come from them, without HTTPS: to try it on one machine.
+    /// Allow learning platforms without HTTPS, for tests on one machine.
     #[arg(long)]
     pub(super) lti_over_http: bool,
-    /// On a fresh server: make a course with an assignment and a student, and write a program with a mistake for them
+    /// On a new server: make a course with an assignment and a student, and write a program with a mistake for them
     /// to hand in.
     #[arg(long)]
     pub(super) example: bool,
@@ -131,12 +131,12 @@ fn public_url(text: &str) -> Result<String, String> {
     let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();
     if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
-        return Err("an address is https://HOST or http://HOST:PORT, without a path".to_owned());
+        return Err("an address must be https://HOST or http://HOST:PORT, without a path".to_owned());
     }
     Ok(text.trim_end_matches('/').to_owned())
 }
 
-/// Prints a link that signs an administrator in once: the way back in for who lost theirs.
+/// Prints a link that signs an administrator in once: for administrators who have lost theirs.
 #[derive(Debug, Args)]
 pub(super) struct AdminLinkArguments {
     #[command(flatten)]
@@ -151,7 +151,7 @@ pub(super) struct AdminLinkArguments {
 }
 
 /// Copies the database and all uploads and reports into a new folder, while the server runs. PostgreSQL is copied by
-/// pg_dump, which has to be installed.
+/// pg_dump, which must be installed.
 #[derive(Debug, Args)]
 pub(super) struct BackupArguments {
     #[command(flatten)]
@@ -182,7 +182,7 @@ pub(super) struct HealthArguments {
     pub(super) data: PathBuf,
 }
 
-/// Looks through an upload; the server calls this for each archive.
+/// Checks an upload; the server calls this for each archive.
 #[derive(Debug, Args)]
 #[command(hide = true)]
 pub(super) struct LookThroughArguments {
@@ -197,7 +197,7 @@ pub(super) struct LookThroughArguments {
     pub(super) file: PathBuf,
 }
 
-/// Grades what waits in the queue.
+/// Grades the submissions that wait in the queue.
 #[derive(Debug, Args)]
 pub(super) struct WorkerArguments {
     #[command(flatten)]

@@ -12,7 +12,7 @@ use std::{
     time::Duration,
 };
 
-/// How long an upload or a job that nobody finished may lie around.
+/// The longest time that an upload or a job that nobody finished may lie around.
 const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
 
 /// The data folder's parts.

@@ -3,7 +3,7 @@
 use super::{arguments::HealthArguments, heartbeat};
 use std::time::Duration;
 
-/// How long the server may take.
+/// The longest time that the server may take.
 const PATIENCE: Duration = Duration::from_secs(5);
 
 /// Returns whether it is.

@@ -13,10 +13,10 @@ const FILE: &str = "alive";
 /// How often there is a sign, where the watchdog does not want it sooner.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// How long a look at oneself may take.
+/// The longest time that a look at oneself may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A process without a sign for so long is not alive.
+/// A process that has been silent for this time counts as dead.
 const SILENCE: Duration = Duration::from_secs(60);
 
 /// Says that the process has begun its work.

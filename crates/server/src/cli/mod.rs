@@ -65,7 +65,7 @@ fn until_signalled() -> Result<CancellationToken> {
                 std::process::exit(130);
             }
             heartbeat::stopping();
-            tracing::info!("stopping; jobs are given back (once more to stop at once)");
+            tracing::info!("stopping; jobs are given back (once more to stop immediately)");
             cancelled.cancel();
         }
     });

@@ -32,7 +32,7 @@ const DAY: u64 = 24 * 3600;
 /// A mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// How long the grader may take to answer.
+/// The longest time that the grader may take to answer.
 const ANSWER: Duration = Duration::from_secs(20);
 
 /// How often the server looks for what is not kept any longer.
@@ -42,7 +42,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let stop = until_signalled()?;
     // First of all: a server that can't listen leaves nothing behind.
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
-        format!("cannot listen on {}; name another place by --listen ADDRESS:PORT", arguments.listen)
+        format!("cannot listen on {}; name another address by --listen ADDRESS:PORT", arguments.listen)
     })?;
     let folders = ServiceFolders::open(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
@@ -142,8 +142,8 @@ async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
         match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
             Ok(found) if found == retention::GivenUp::default() => {}
-            Ok(found) => tracing::info!(found.submissions, found.artifacts, "what is too old is not kept any longer"),
-            Err(error) => tracing::warn!(%error, "what is too old could not be given up"),
+            Ok(found) => tracing::info!(found.submissions, found.artifacts, "old uploads and reports were removed"),
+            Err(error) => tracing::warn!(%error, "old uploads and reports could not be removed"),
         }
         tokio::time::sleep(GIVE_UP_EVERY).await;
     }
@@ -153,7 +153,7 @@ async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
 async fn suites(named: Option<&Path>) -> Suites {
     let asked = async { Ok(Suites::read(&answer(named, &["suite", "list", "--format", "json"]).await?)?) };
     asked.await.unwrap_or_else(|error: anyhow::Error| {
-        tracing::warn!(error = format!("{error:#}"), "the grader can't be asked for its suites: any name is taken");
+        tracing::warn!(error = format!("{error:#}"), "the grader does not list its suites: any name is accepted");
         Suites::default()
     })
 }

@@ -1,7 +1,7 @@
 //! The errors of a database, as far as callers act on them.
 use thiserror::Error;
 
-/// Why a statement failed.
+/// The reason why a statement failed.
 #[derive(Debug, Error)]
 pub enum DbError {
     /// The database can't be reached or is going away: the same may succeed a moment later.
@@ -11,7 +11,7 @@ pub enum DbError {
     #[error("the database is busy: {0}")]
     Busy(String),
     /// Something like it is there already; the statement's author knows what.
-    #[error("it is there already: {0}")]
+    #[error("it exists already: {0}")]
     Conflict(String),
     /// A statement is wrong, a value is not what it should be.
     #[error("the database refused: {0}")]

@@ -43,7 +43,7 @@ pub const LATEST: i64 = MIGRATIONS.len() as i64;
 /// PostgreSQL's name for the lock that keeps two servers from migrating at once; any number will do.
 const LOCK: i64 = 0x6673_6f5f_6d69_6772;
 
-/// Why the tables can't be brought up to date.
+/// The reason why the tables can't be brought up to date.
 #[derive(Debug, Error)]
 pub enum MigrateError {
     /// A newer program has been here.

@@ -34,7 +34,7 @@ use std::{
 };
 use tokio::sync::Semaphore;
 
-/// How long a statement waits for a connection, or for SQLite's one writer, before it gives up.
+/// The time that a statement waits for a connection, or for SQLite's one writer, before it gives up.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// Connections to PostgreSQL that one process holds at most.

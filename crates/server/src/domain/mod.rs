@@ -93,7 +93,7 @@ pub struct Options {
     pub public: String,
     /// Where a request's own address is found: the other end of its connection, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
-    /// How long a body may pause.
+    /// The longest time that a body may pause.
     pub patience: Duration,
     /// Requests of one account in a minute.
     pub requests_per_minute: u32,

@@ -80,14 +80,14 @@ pub struct Submission {
     pub digest: String,
     /// The submission's size in bytes.
     pub size: i64,
-    /// When it came, in milliseconds since 1970.
+    /// The time when it came, in milliseconds since 1970.
     pub created_at: i64,
     /// When its bytes and reports were given up; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
     /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
     pub state: String,
-    /// How many jobs are graded before it, while it waits.
+    /// The number of jobs that are graded before it, while it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead: Option<i64>,
     /// In how many seconds its grade may be expected, while it waits and workers are there.
@@ -111,7 +111,7 @@ pub struct Submission {
     pub is_withheld: bool,
     #[serde(skip)]
     pub(super) is_published: bool,
-    /// Why the grader failed on it last; for staff.
+    /// The reason why the grader failed on it last; for staff.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
     #[serde(skip)]
@@ -137,7 +137,7 @@ pub struct Mark {
     /// The question of the owner.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub request: Option<String>,
-    /// When they asked, in milliseconds since 1970.
+    /// The time when they asked, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub requested_at: Option<i64>,
 }
@@ -150,7 +150,8 @@ pub struct ResultView {
     /// The result.
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// When it was graded, in milliseconds since 1970. The full hour while groups that the suite hides are withheld.
+    /// The time when it was graded, in milliseconds since 1970. The full hour while groups that the suite hides are
+    /// withheld.
     pub created_at: i64,
 }
 
@@ -231,11 +232,11 @@ pub struct QueueWorker {
     pub name: String,
     /// The worker's version.
     pub version: String,
-    /// How many gradings it does at one time.
+    /// The number of gradings that it does at one time.
     pub slots: i64,
     /// How many it does now.
     pub running: i64,
-    /// When it was last seen, in milliseconds since 1970.
+    /// The time when it was last seen, in milliseconds since 1970.
     pub seen_at: i64,
     /// Since when it takes no jobs because it can't grade.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -345,7 +346,7 @@ pub(super) async fn submissions_of(
     transaction.all(statement, values![assignment, account]).await
 }
 
-/// How many submissions are read at a time.
+/// The number of submissions that are read at a time.
 const PAGE: i64 = 500;
 
 /// Returns the submissions to an assignment behind the one of this number, oldest first: a page of them, none behind

@@ -23,7 +23,7 @@ pub(crate) mod scope {
     pub(crate) const MEMBERS: &str = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
 }
 
-/// How long a platform may take.
+/// The longest time that a platform may take.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The longest answer that is read.
@@ -38,7 +38,7 @@ const MARGIN: Duration = Duration::from_secs(30);
 /// The longest wait that a platform may ask for.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 
-/// Why a platform did not do what it was asked.
+/// The reason why a platform did not do what it was asked.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
     /// The platform is away, or has too much to do; a later request may succeed.

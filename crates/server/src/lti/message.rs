@@ -17,7 +17,7 @@ use thiserror::Error;
 /// A message is looked at for so long after it was made, in seconds.
 const OLDEST: u64 = 3600;
 
-/// Why a message is not believed.
+/// The reason why a message is not believed.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Rejection {
     /// The message is no signed message, or signed by another algorithm than RS256.
@@ -102,7 +102,7 @@ pub struct Arrival {
     pub line_item: Option<String>,
     /// Where columns can be made, when they may.
     pub line_items: Option<String>,
-    /// Where the platform tells who is in its course.
+    /// The place where the platform tells who is in its course.
     pub memberships: Option<String>,
     /// A link is to be chosen.
     pub deep_linking: Option<DeepLinking>,
@@ -134,7 +134,7 @@ pub struct Resource {
 /// The wishes of a platform when a link is to be chosen (DL 4.4.1).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeepLinking {
-    /// Where the answer goes.
+    /// The place where the answer goes.
     pub deep_link_return_url: String,
     /// The types of items that may be chosen.
     #[serde(default)]
@@ -235,7 +235,10 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     if !settings.deployments.contains(&claims.deployment) {
         return Err(Rejection::Deployment(claims.deployment.chars().take(255).collect()));
     }
-    ensure((1..=255).contains(&claims.sub.len()), Rejection::Content("sub is 1 to 255 characters long".to_owned()))?;
+    ensure(
+        (1..=255).contains(&claims.sub.len()),
+        Rejection::Content("sub must be 1 to 255 characters long".to_owned()),
+    )?;
     let missing = |what: &str| Rejection::Content(format!("{what} is missing"));
     let (resource, deep_linking) = match claims.message_type.as_str() {
         "LtiResourceLinkRequest" => (Some(claims.resource.ok_or_else(|| missing("resource_link"))?), None),
@@ -251,7 +254,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     let context = claims.context.ok_or_else(|| missing("context"))?;
     let is_name = |text: &str| (1..=255).contains(&text.len());
     if !is_name(&context.id) || resource.as_ref().is_some_and(|resource| !is_name(&resource.id)) {
-        return Err(Rejection::Content("the names of courses and links are 1 to 255 characters long".to_owned()));
+        return Err(Rejection::Content("the names of courses and links must be 1 to 255 characters long".to_owned()));
     }
     let endpoint = claims.endpoint.unwrap_or_default();
     let may = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);

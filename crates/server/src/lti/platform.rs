@@ -77,25 +77,25 @@ impl PlatformWish {
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
-            ensure(is_word(text), Problem::invalid(format!("{name} is 1 to 255 characters long")))?;
+            ensure(is_word(text), Problem::invalid(format!("{name} must be 1 to 255 characters long")))?;
         }
         for (name, text) in
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
         {
             if address(text, over_http).is_none() {
-                return Err(Problem::invalid(format!("{name} is an address that begins with https://")));
+                return Err(Problem::invalid(format!("{name} must be an address that begins with https://")));
             }
         }
         if self.deployments.is_empty() || self.deployments.len() > 1000 || !self.deployments.iter().all(|d| is_word(d))
         {
-            return Err(Problem::invalid("deployments is a list of their numbers, with at least one"));
+            return Err(Problem::invalid("deployments must be a list of their numbers, with at least one"));
         }
         if self.audience.as_deref().is_some_and(|audience| !is_word(audience)) {
-            return Err(Problem::invalid("audience is 1 to 255 characters long"));
+            return Err(Problem::invalid("audience must be 1 to 255 characters long"));
         }
         let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| place(&url) == *host);
         if self.hosts.len() > 50 || !self.hosts.iter().all(is_host) {
-            return Err(Problem::invalid("hosts is a list of host names, such as lms.example.org"));
+            return Err(Problem::invalid("hosts must be a list of host names, such as lms.example.org"));
         }
         Ok(())
     }

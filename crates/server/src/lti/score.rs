@@ -95,13 +95,13 @@ pub(super) struct Parcel {
     pub(super) subject: String,
     /// The column of the grade book, when it is known.
     pub(super) line_item: Option<String>,
-    /// Where it is to be found or made otherwise.
+    /// The place where it is otherwise found or made.
     pub(super) line_items: Option<String>,
     pub(super) resource: String,
     pub(super) slug: String,
     pub(super) title: String,
     pub(super) content: Value,
-    /// When the content became so, in milliseconds since 1970.
+    /// The time when the content became so, in milliseconds since 1970.
     pub(super) stamp: i64,
 }
 
@@ -151,7 +151,7 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 }
 
 /// Returns the worth of somebody's work on an assignment: the most points of all their submissions. While there are
-/// none the platform is told that they come, and when the grader failed, that somebody has to look: never a zero that
+/// none the platform is told that they come, and when the grader failed, that staff must look at it: never a zero that
 /// nobody earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,

@@ -63,14 +63,14 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
                     let (database, lti) = (database.clone(), lti.clone());
                     tokio::spawn(async move {
                         if let Err(error) = work(&database, &policy, &lti, &claim).await {
-                            tracing::warn!(%error, "what became of a score can't be noted yet");
+                            tracing::warn!(%error, "the state of a score can't be stored yet");
                         }
                         drop(place);
                     });
                     continue;
                 }
                 Ok(None) => {}
-                Err(error) => tracing::warn!(%error, "no score to be had"),
+                Err(error) => tracing::warn!(%error, "no score could be read"),
             },
         }
         tokio::select! {
@@ -124,7 +124,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
         }
         Err(fault) => {
             let text = fault.to_string();
-            tracing::warn!(job = claim.lease.job, fault = text, "a platform did not take a score");
+            tracing::warn!(job = claim.lease.job, fault = text, "a platform rejected a score");
             let (tries, least) = match &fault {
                 ServiceFault::Away { after, .. } => (PATIENT, after.unwrap_or_default()),
                 ServiceFault::Refused(_) => (REFUSED, Duration::ZERO),

@@ -81,7 +81,7 @@ impl Trust {
         let newly = match keys {
             Ok(keys) => KnownKeys { address, keys, read_at: Some(now), asked_at: now },
             Err(error) => {
-                tracing::warn!(platform = platform.name, %error, "a platform's keys can't be had");
+                tracing::warn!(platform = platform.name, %error, "a platform's keys can't be read");
                 let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE));
                 let none = || KnownKeys { address, keys: Vec::new(), read_at: None, asked_at: now };
                 KnownKeys { asked_at: now, ..before.unwrap_or_else(none) }

@@ -6,7 +6,7 @@ use crate::{
 };
 use std::time::Duration;
 
-/// How many finished jobs the expected time looks back on.
+/// The number of finished jobs that the expected time looks back on.
 const RECENT: i64 = 50;
 
 /// A waiting job's place in the queue.

@@ -8,13 +8,13 @@ use crate::{
     values,
 };
 
-/// Why a job whose lease ran out came to nothing.
+/// The reason why a job whose lease ran out came to nothing.
 const SILENT: &str = "its worker went silent";
 
 /// The findings of a tick.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tick {
-    /// How many jobs wait again.
+    /// The number of jobs that wait again.
     pub retried: usize,
     /// Jobs that took their worker down too often; the caller writes what follows in the same transaction.
     pub buried: Vec<BuriedJob>,
@@ -31,7 +31,7 @@ pub struct BuriedJob {
     pub attempt: i64,
     /// The last worker's name.
     pub worker: String,
-    /// Why the last try came to nothing.
+    /// The reason why the last try came to nothing.
     pub fault: String,
 }
 

@@ -28,20 +28,20 @@ const MOST: i64 = (1 << 53) - 1;
     info(
         title = "fosssim-server",
         description = "A course's grading server. Send a token: `Authorization: Bearer fso_...`. Errors are \
-                       `application/problem+json`, and say how to mend them. Times are milliseconds since 1970.",
+                       `application/problem+json`, and say how to fix them. Times are milliseconds since 1970.",
         license(name = "MIT OR Apache-2.0", identifier = "MIT OR Apache-2.0")
     ),
     servers((url = "/", description = "This server")),
     components(schemas(Problem, OutputFile, Slug, FileName, Digest)),
     tags(
-        (name = "accounts", description = "Oneself: account, password, tokens"),
+        (name = "accounts", description = "The signed-in person: account, password, tokens"),
         (name = "courses", description = "Courses and their members"),
-        (name = "assignments", description = "Assignments, and how a class stands in them"),
-        (name = "submissions", description = "What was handed in, and what it came to"),
+        (name = "assignments", description = "Assignments, and a class's results"),
+        (name = "submissions", description = "Submissions and their grades"),
         (name = "regrades", description = "Grading all submissions again"),
         (name = "administration", description = "What administrators do"),
-        (name = "workers", description = "What workers on other machines ask; with a worker's token"),
-        (name = "operations", description = "For the people who run the server; without any sign-in")
+        (name = "workers", description = "Requests of workers on other machines, with a worker's token"),
+        (name = "operations", description = "For monitors of the server; without a sign-in")
     )
 )]
 struct Base;
@@ -97,8 +97,8 @@ fn schemes() -> [(&'static str, SecurityScheme); 3] {
     let bearer = |text: &str| {
         SecurityScheme::Http(HttpBuilder::new().scheme(HttpAuthScheme::Bearer).description(Some(text)).build())
     };
-    let text = "A browser's session, from signing in; behind HTTPS the cookie is called `__Host-fosssim`. What changes \
-                something then needs `Sec-Fetch-Site: same-origin` or this server's `Origin`.";
+    let text = "A browser's session, from signing in; behind HTTPS the cookie is called `__Host-fosssim`. Then a \
+        request that changes something needs `Sec-Fetch-Site: same-origin` or this server's `Origin`.";
     let cookie = ApiKeyValue::with_description(cookie_name(false), text);
     [
         ("token", bearer("A person's token (`fso_...`), made on the page \"Account\".")),
@@ -179,7 +179,7 @@ fn complete_parameter(parameter: &mut Parameter) {
         (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
         (ParameterIn::Path, "name") => (named("Slug"), "What it is called"),
         (ParameterIn::Path, "id") => (number(1), "The number"),
-        (ParameterIn::Query, "before") => (number(0), "Only what was before this one"),
+        (ParameterIn::Query, "before") => (number(0), "Only entries before this one"),
         (ParameterIn::Query, "format") => (text("^(csv|jsonl)$"), "`csv` or `jsonl`"),
         (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "What kind of thing it is"),
         (ParameterIn::Header, "Idempotency-Key") => (text("^[!-~]{1,200}$"), "A name of the sender's own"),
@@ -208,11 +208,11 @@ fn bytes() -> RefOr<Schema> {
 /// Returns the description of an answer that nobody describes.
 fn answer(status: &str) -> String {
     if status == "default" {
-        return "Refused, or failed: what is wrong, and what to do about it".to_owned();
+        return "Rejected or failed: what is wrong, and what to do about it".to_owned();
     }
     let reason = status.parse().ok().and_then(|status| StatusCode::from_u16(status).ok()?.canonical_reason());
     match reason {
-        Some("OK") => "What was asked for".to_owned(),
+        Some("OK") => "The requested data".to_owned(),
         Some("Created") => "What was made".to_owned(),
         reason => reason.unwrap_or("An answer").to_owned(),
     }

@@ -50,7 +50,7 @@ pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Ne
     response
 }
 
-/// How long a session lasts, in seconds.
+/// The time that a session lasts, in seconds.
 pub(super) const SESSION: u32 = 1_209_600;
 
 /// Returns a session's cookie, for a time in seconds.

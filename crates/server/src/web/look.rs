@@ -28,7 +28,7 @@ pub(super) async fn examine(
     said: Option<&str>,
     settings: &Settings,
 ) -> Result<Form, Problem> {
-    let wrong = || Problem::invalid("form is program, sources or traces");
+    let wrong = || Problem::invalid("form must be program, sources or traces");
     let form = said.map(|name| Form::from_name(name).ok_or_else(wrong)).transpose()?;
     let mut start = Vec::new();
     std::fs::File::open(file)?.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
@@ -77,7 +77,7 @@ async fn in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<
         Ok(output) => serde_json::from_slice(&output?.stdout).ok(),
         Err(_) => None,
     };
-    let answer = answer.unwrap_or_else(|| Err("it takes too long, or too much memory, to look through".to_owned()));
+    let answer = answer.unwrap_or_else(|| Err("checking it takes too long, or too much memory".to_owned()));
     if answer.is_ok() {
         member.archive_was_right();
     }

@@ -43,7 +43,7 @@ struct UntakenBytes(Arc<AtomicU64>);
 impl UntakenBytes {
     fn come(&self, bytes: usize) -> Result<(), &'static str> {
         let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
-        if untaken > BESIDE { Err("the form has too much beside its file") } else { Ok(()) }
+        if untaken > BESIDE { Err("the form has too many fields besides its file") } else { Ok(()) }
     }
 
     fn take(&self, bytes: usize) {
@@ -53,7 +53,7 @@ impl UntakenBytes {
 
 /// A file that came.
 pub(super) struct ReceivedFile {
-    /// Where it lies until it is stored.
+    /// The place where it lies until it is stored.
     pub(super) file: TempPath,
     /// The sender's name for it.
     pub(super) name: Option<String>,
@@ -162,7 +162,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
             }
             Some("form") => form = Some(short_text(place, field).await?),
             Some("key") => key = Some(short_text(place, field).await?),
-            _ => return Err(Problem::invalid("the form has a field file, and may have form and key")),
+            _ => return Err(Problem::invalid("the form must have a field file, and may have form and key")),
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
@@ -243,7 +243,7 @@ pub(super) fn is_program(start: &[u8]) -> bool {
 /// it. It runs in a process of its own (`web::look`).
 ///
 /// # Errors
-/// Why it is refused.
+/// The reason why it is refused.
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;

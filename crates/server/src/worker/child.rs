@@ -9,7 +9,7 @@ use std::{
 };
 use tokio::sync::watch;
 
-/// How a child ended.
+/// The way a child ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// By itself, with this exit code.

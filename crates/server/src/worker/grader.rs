@@ -23,14 +23,14 @@ pub struct NewFile {
     pub name: String,
     /// The file's media type.
     pub media_type: String,
-    /// Where it lies.
+    /// The place where it lies.
     pub path: PathBuf,
 }
 
 /// The file in its folder in which a grader may say how far it is, as `3/85`: scenes with a verdict, all scenes.
 pub const PROGRESS: &str = "progress";
 
-/// Why there is no verdict. Never the submission's fault.
+/// The reason why there is no verdict. Never the submission's fault.
 #[derive(Debug, Error)]
 pub enum GraderFault {
     /// Something failed; another try may help.
@@ -46,7 +46,7 @@ pub trait Grader: Clone + Send + Sync + 'static {
     /// Proves that it can grade here and now, and may use the empty folder as it likes.
     ///
     /// # Errors
-    /// Why it can't; said to staff, never to students.
+    /// The reason why it can't; said to staff, never to students.
     fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
     /// Grades the submission that lies at `submission`, by the suite whose archive lies at `suite` if it is one, and

@@ -30,7 +30,7 @@ pub(super) struct Health<G> {
     asking: Arc<Mutex<()>>,
     /// Held while there is a proof.
     proving: Arc<Mutex<()>>,
-    /// Why the last proof failed.
+    /// The reason why the last proof failed.
     fault: Arc<std::sync::Mutex<Option<String>>>,
     /// Rings when the worker begins or ceases to be able to grade.
     change: Arc<Notify>,

@@ -19,7 +19,7 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// How long the grader may take to write its reports after it was asked to stop.
+/// The longest time that the grader may take to write its reports after it was asked to stop.
 pub(super) const GRACE: Duration = Duration::from_secs(20);
 
 /// How much of the grader's messages is kept for the administrator.
@@ -97,10 +97,10 @@ impl Program {
 /// The scene of a proof: one of the grader's own, and small.
 const PROOF: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
 
-/// How many bytes a folder must take for jobs to work in it.
+/// The number of bytes that a folder must take for jobs to work in it.
 const ROOM: usize = 8 << 20;
 
-/// How long a step of a proof may take.
+/// The longest time that a step of a proof may take.
 const PROOF_TIME: Duration = Duration::from_secs(60);
 
 impl Program {

@@ -21,7 +21,7 @@ use ureq::{Agent, Body, RequestBuilder, http::Response};
 /// How often a worker asks whether there is a job.
 const ASK_EVERY: Duration = Duration::from_secs(1);
 
-/// How long the server may take to answer, and to begin and go on with a file.
+/// The longest time that the server may take to answer, and to begin and go on with a file.
 const PATIENCE: Duration = Duration::from_secs(60);
 const WHOLE_FILE: Duration = Duration::from_secs(900);
 
@@ -199,7 +199,7 @@ impl JobSource for RemoteSource {
         let found = digest_of_file(file).await.map_err(away)?;
         if found.digest != *digest {
             drop(fs::remove_file(file));
-            return Err(SourceError::Away(format!("the server sent other bytes than {digest}")));
+            return Err(SourceError::Away(format!("the server's bytes do not match {digest}")));
         }
         Ok(())
     }

@@ -16,7 +16,7 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// How long a slot waits for a job before it asks again.
+/// The time that a slot waits for a job before it asks again.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The wait after the source did not answer; it doubles up to the longest.
@@ -94,7 +94,7 @@ async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: Cance
                 }
             }
             Err(error) => {
-                tracing::warn!(%error, "no job to be had");
+                tracing::warn!(%error, "no job could be claimed");
                 tokio::select! {
                     () = tokio::time::sleep(wait) => {}
                     () = stop.cancelled() => {}
@@ -105,7 +105,7 @@ async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: Cance
     }
 }
 
-/// How a job ended, to be told to the source.
+/// The way a job ended, to be told to the source.
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
@@ -240,7 +240,7 @@ async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn()
     let mut wait = FIRST_WAIT;
     for _ in 0..PATIENT_TRIES {
         match ask().await {
-            Err(SourceError::Away(error)) => tracing::warn!(error, "the source is away"),
+            Err(SourceError::Away(error)) => tracing::warn!(error, "the source can't be reached"),
             answer => return answer,
         }
         tokio::time::sleep(wait).await;
@@ -258,7 +258,7 @@ async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop
         let answer = match &ending {
             JobEnding::Finished(outcome) => source.finish(lease, outcome).await,
             JobEnding::Failed(fault) => {
-                tracing::warn!(job = lease.job, fault, "a try came to nothing");
+                tracing::warn!(job = lease.job, fault, "a try failed");
                 source.fail(lease, fault).await
             }
             JobEnding::GivenBack => source.release(lease).await,
@@ -268,7 +268,7 @@ async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop
             Ok(answer) if answer.held => return,
             Ok(_) => return tracing::warn!(job = lease.job, "too late: the lease is lost"),
             Err(error @ (SourceError::Refused(_) | SourceError::Dismissed)) => {
-                return tracing::error!(job = lease.job, %error, "the result is refused; the lease will run out");
+                return tracing::error!(job = lease.job, %error, "the result is rejected; the lease will expire");
             }
             Err(SourceError::Away(error)) => {
                 tracing::warn!(job = lease.job, error, "the result can't be delivered yet")

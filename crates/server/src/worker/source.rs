@@ -8,7 +8,7 @@ use crate::{
 use std::{future::Future, path::Path, time::Duration};
 use thiserror::Error;
 
-/// Why a source did not answer.
+/// The reason why a source did not answer.
 #[derive(Debug, Error)]
 pub enum SourceError {
     /// The request may succeed a moment later.

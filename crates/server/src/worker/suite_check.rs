@@ -6,10 +6,10 @@ use super::{
 use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
-/// How long the grader may look, in seconds on the clock and of the processor.
+/// The longest time that the grader may look, in seconds on the clock and of the processor.
 const SECONDS: u64 = 60;
 
-/// How much memory it may take for that.
+/// The memory that it may take for that.
 const MEMORY: u64 = 2 << 30;
 
 /// How much of what it says is told.
@@ -30,11 +30,11 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.ended()).await else {
         child.kill();
         child.ended().await;
-        return Err(format!("the grader has looked at it for {SECONDS} seconds and not come to an end"));
+        return Err(format!("the grader did not finish checking it within {SECONDS} seconds"));
     };
     let said = fs::read(messages.path()).unwrap_or_default();
     let said = String::from_utf8_lossy(&said[..said.len().min(MESSAGE)]).into_owned();
-    tracing::info!(?end, said, "the grader looked at a suite");
+    tracing::info!(?end, said, "the grader checked a suite");
     match (end, said.trim().strip_prefix("error:")) {
         (End::Code(0), _) => Ok(()),
         (End::Code(_), Some(said)) if !said.contains("unrecognized subcommand") => Err(without_paths(
@@ -47,6 +47,6 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
                 .replace(":;", ":"),
         )),
         (End::Code(_), _) => Ok(()),
-        (End::Signal(_), _) => Err("the grader failed while it looked at it, which may be for its size".to_owned()),
+        (End::Signal(_), _) => Err("the grader failed while it checked it, perhaps because of its size".to_owned()),
     }
 }

@@ -71,7 +71,7 @@ async fn enqueue(fresh: &Fresh, artifact: &Artifact, jobs: i64) {
     transaction.commit().await.expect("commit");
 }
 
-/// How many jobs are in a state.
+/// The number of jobs that are in a state.
 async fn count(fresh: &Fresh, state: &str) -> i64 {
     let mut transaction = fresh.database.read().await.expect("a transaction");
     let row = transaction.one("SELECT count(*) AS n FROM job WHERE state = ?", values![state]).await;

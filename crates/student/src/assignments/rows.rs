@@ -30,7 +30,7 @@ pub struct RowOf<M> {
     pub id: &'static str,
     /// Wrong, correct, or hostile.
     pub kind: RowKind,
-    /// Where it is made.
+    /// The place where it is made.
     pub area: Area,
     /// The mistake in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives
     /// nothing away.

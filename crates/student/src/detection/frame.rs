@@ -6,7 +6,7 @@ use crate::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];
 
-/// Where the coordinates of a program are those of the scene after moving the origin here.
+/// The place where the coordinates of a program are those of the scene after moving the origin here.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
 /// Cosine and sine of the angle by which a program turns its coordinates: 3-4-5 would be too good, its products are

@@ -49,11 +49,11 @@ impl Picks {
 pub(super) struct Motion {
     /// The owner of the motion, for messages.
     pub(super) name: String,
-    /// How many steps it holds.
+    /// The number of steps that it holds.
     pub(super) pictures: u32,
     /// The box around all of them.
     pub(super) extent: Extent,
-    /// Why it ends before the scene does.
+    /// The reason why it ends before the scene does.
     pub(super) stopped: Option<String>,
     rows: BufReader<SpooledTempFile>,
     width: usize,

@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// A polynomial above the floor is never round-off; and the floor is not much larger than it has to be.
+    /// A polynomial above the floor is never round-off, and the floor is not much larger than necessary.
     #[test]
     fn what_says_something_is_above_round_off() {
         let scene = scene(CROWD);

@@ -1,4 +1,4 @@
-//! How many detection passes a step has logged, and which positions they certainly saw.
+//! The number of detection passes that a step has logged, and which positions they certainly saw.
 use super::Follower;
 use crate::finding::{FindingDetail, Part};
 use fosssim_model::{

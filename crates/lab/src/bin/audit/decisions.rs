@@ -11,7 +11,7 @@ use fosssim_oracle::num::{
 /// Units of rounding that the fair rules allow for.
 const UNITS: f64 = 64.0;
 
-/// Why root finder and certified decision differ: what the original does on purpose, or its rounding.
+/// The reason why root finder and certified decision differ: what the original does on purpose, or its rounding.
 const REASONS: [&str; 3] = ["c t^m", "dropped terms", "rounding"];
 
 /// Certified decisions of one pair type beside those of the root finder.

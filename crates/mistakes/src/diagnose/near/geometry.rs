@@ -1,4 +1,4 @@
-//! Where the bodies of near pairs are.
+//! The place where the bodies of near pairs are.
 use fosssim_model::{
     scene::{Edge, HalfPlane, Scene},
     sim::{Pair, PairKind, State},

@@ -28,7 +28,7 @@ const ALIKE: f64 = 1e-9;
 
 /// One polynomial of one sample.
 pub(super) struct Case<'a> {
-    /// Where it comes from.
+    /// The place where it comes from.
     pub sample: &'a Sample,
     /// The logged coefficients.
     pub logged: &'a [f64],
@@ -65,7 +65,7 @@ pub(super) struct Candidate {
     /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong
     /// input, 5 and more for wrong letters and foreign terms; edits add up.
     pub cost: f64,
-    /// How many samples it reproduces.
+    /// The number of samples that it reproduces.
     pub reproduced: usize,
 }
 

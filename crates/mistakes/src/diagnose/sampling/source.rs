@@ -52,7 +52,7 @@ pub struct Outline {
     opening_memory: usize,
     /// Records whose polynomials have small leading coefficients, which the course's library drops.
     pub padded: u64,
-    /// How many records the trace has, when its end was reached.
+    /// The number of records that the trace has, when its end was reached.
     pub records: Option<u64>,
     /// Whether the trace goes on after the scene's last step.
     pub is_longer: bool,

@@ -45,7 +45,7 @@ pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
-/// Returns the steps whose polynomials are right as far as they go, but of which there are too many or too few.
+/// Returns the steps that log right polynomials, but too many or too few of them.
 fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {

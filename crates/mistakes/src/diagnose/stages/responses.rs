@@ -62,7 +62,7 @@ impl Responses {
         all
     }
 
-    /// Returns whether an isolated contact of this kind was seen, all of which are right.
+    /// Returns whether there are isolated contacts of this kind, and all of them are right.
     pub(super) fn is_right(&self, kind: PairKind) -> bool {
         let of_kind = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))

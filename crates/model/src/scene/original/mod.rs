@@ -34,7 +34,7 @@ pub struct OriginalScene {
     pub description: Vec<u8>,
 }
 
-/// Why the original does not run a scene.
+/// The reason why the original does not run a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{explanation}")]
 pub struct Refusal {

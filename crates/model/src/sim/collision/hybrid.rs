@@ -19,7 +19,7 @@ use super::{
 pub(super) struct HybridScratch {
     hits: Vec<Impulse>,
     round_start: Vec<f64>,
-    /// Where the geometric part stands.
+    /// The place where the geometric part stands.
     state: State,
     builder: Builder,
     zones: Zones,

@@ -19,7 +19,7 @@ use fosssim_num::{
 /// How a point moves within a step: on a straight line, at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointMotion {
-    /// Where it is at the start of the step.
+    /// The point's position at the start of the step.
     pub start: Vec2,
     /// The point's displacement in the step.
     pub shift: Vec2,

@@ -22,7 +22,7 @@ pub fn what(explanation: &Explanation) -> String {
         About::Unfinished => format!("Not written yet: {}.", unfinished(&explanation.same_as)),
         About::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
-            format!("Is this trace of this scene? Its first record is not the scene's{length}.")
+            format!("Does this trace belong to this scene? Its first record is not the scene's{length}.")
         }
         About::Polynomials { subjects, found } => polynomials::what(subjects, found),
         About::Stage(fault) => stages::what(fault),

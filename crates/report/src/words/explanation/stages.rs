@@ -260,7 +260,7 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
         StageDetail::Order => {
-            "per particle: the particles behind it, the edges that it is no end of, the half-planes".to_owned()
+            "per particle: the particles after it, the edges of which it is not an end, the half-planes".to_owned()
         }
         StageDetail::Impacts { right: false, count, low, high } => {
             format!("times of impact of these ({count}): {low:.4} to {high:.4}")

@@ -28,7 +28,7 @@ const POSTGRES: &str = "fosssim.dump";
 pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     let (folders, output) = (ServiceFolders::find(&arguments.place)?, &arguments.output);
     if output.exists() {
-        bail!("{} is there already: a backup is a new folder", output.display());
+        bail!("{} exists already: name a new folder", output.display());
     }
     let (database, address) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;

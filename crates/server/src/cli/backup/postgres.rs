@@ -8,7 +8,7 @@ use url::{Url, form_urlencoded};
 /// Returns an address without its password, and the password.
 fn without_password(address: &str) -> Result<(Url, String)> {
     // The text may hold a password: it is not repeated.
-    let mut url = Url::parse(address).ok().context("the database's address is not understood")?;
+    let mut url = Url::parse(address).ok().context("the database's address is invalid")?;
     let form = format!("password={}", url.password().unwrap_or_default().replace('+', "%2B"));
     let fields = form_urlencoded::parse(form.as_bytes()).into_owned().chain(url.query_pairs().into_owned());
     let (passwords, rest): (Vec<_>, Vec<_>) = fields.partition(|(name, _)| name == "password");
@@ -17,7 +17,7 @@ fn without_password(address: &str) -> Result<(Url, String)> {
     }
     let unset = url.host_str().is_some_and(|host| !host.is_empty()).then(|| url.set_password(None));
     if unset == Some(Err(())) {
-        bail!("the database's address is not understood");
+        bail!("the database's address is invalid");
     }
     Ok((url, passwords.into_iter().next_back().map(|(_, password)| password).unwrap_or_default()))
 }

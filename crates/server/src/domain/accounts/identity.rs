@@ -11,7 +11,7 @@ use sha2::{Digest as _, Sha256};
 use std::fmt;
 use utoipa::ToSchema;
 
-/// How long a session lasts after it was last seen.
+/// The time that a session lasts after it was last seen.
 const SESSION: i64 = 14 * 24 * 3600 * 1000;
 
 /// The most sessions of an account: the oldest ends when another one begins.
@@ -62,7 +62,7 @@ pub struct TokenInfo {
     pub id: i64,
     /// The token's name.
     pub name: String,
-    /// When it was made, in milliseconds since 1970.
+    /// The time when it was made, in milliseconds since 1970.
     pub created_at: i64,
 }
 
@@ -293,7 +293,7 @@ pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Probl
     let length = text.chars().count();
     if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
         return Err(Problem::invalid(format!(
-            "{what} is 1 to 200 characters long, without invisible characters and spaces at its ends"
+            "{what} must be 1 to 200 characters long, without invisible characters and spaces at its ends"
         )));
     }
     Ok(())
@@ -304,7 +304,8 @@ pub(in crate::domain) fn check_slug(what: &str, text: &str) -> Result<(), Proble
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
     if !(1..=60).contains(&text.len()) || !text.chars().all(plain) || text.starts_with(['-', '.', '_']) {
         return Err(Problem::invalid(format!(
-            "{what} is 1 to 60 small letters, digits, dots, dashes and underscores, and begins with a letter or digit"
+            "{what} must be 1 to 60 small letters, digits, dots, dashes and underscores, and begin with a letter or \
+             digit"
         )));
     }
     Ok(())

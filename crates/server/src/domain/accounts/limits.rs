@@ -15,7 +15,7 @@ use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 /// Up- and downloads of all accounts at one time: each takes a connection, a file and some 100 KiB.
 static OF_ALL: Semaphore = Semaphore::const_new(3000);
 
-/// How long an upload waits for others of the same account.
+/// The time that an upload waits for others of the same account.
 const TURN: Duration = Duration::from_secs(30);
 
 /// Archives of an account that may be refused in a minute.
@@ -57,10 +57,10 @@ impl TransferLimits {
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
         let most = self.transfers;
         let of_account = shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
-        let many = |_| Problem::too_many(format!("an account may have {most} up- and downloads at one time"));
+        let many = |_| Problem::too_many(format!("an account may have {most} uploads and downloads at one time"));
         let of_account = of_account.map_err(many)?;
         let of_all = OF_ALL.try_acquire();
-        let of_all = of_all.map_err(|_| Problem::unavailable("too many up- and downloads are under way"))?;
+        let of_all = of_all.map_err(|_| Problem::unavailable("too many uploads and downloads are running"))?;
         Ok(Transfer { _of_account: of_account, _of_all: of_all })
     }
 
@@ -88,14 +88,14 @@ impl Member {
         self.app.limits.transfer(self.account.id)
     }
 
-    /// Waits until an archive of theirs may be looked through, which counts as refused until it turns out to be right.
+    /// Waits until one of the account's archives may be checked. It counts as rejected until it is accepted.
     ///
     /// # Errors
-    /// When too many wait, or too many of theirs were refused.
+    /// When too many archives wait, or too many of the account's were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
         if !self.app.limits.refused.pass(self.account.id, REFUSED, Instant::now()) {
-            return Err(Problem::too_many(format!("more than {REFUSED} archives of yours were refused in a minute")));
+            return Err(Problem::too_many(format!("more than {REFUSED} of your archives were rejected in a minute")));
         }
         Ok(turn)
     }

@@ -36,7 +36,7 @@ const TRIES: u32 = 10;
 /// Wrong passwords in a minute from one address, for whatever logins. A lecture hall may be one address.
 const TRIES_OF_ADDRESS: u32 = 60;
 
-/// How long a password may be.
+/// The greatest length of a password.
 const LENGTH: std::ops::RangeInclusive<usize> = 10..=200;
 
 /// The parts that passwords need: none of them is there on a server that does not allow passwords.
@@ -70,7 +70,7 @@ fn is_kept(password: &str, kept: Option<&str>) -> Result<bool, Problem> {
 /// Does something with a password when it is its turn, away from the threads that must not wait.
 async fn in_turn<T: Send + 'static>(work: impl FnOnce() -> Result<T, Problem> + Send + 'static) -> Result<T, Problem> {
     let turn = tokio::time::timeout(PATIENCE, ROOM.acquire()).await;
-    let turn = turn.map_err(|_| Problem::unavailable("too many sign in at this moment"))?;
+    let turn = turn.map_err(|_| Problem::unavailable("too many people sign in at this moment"))?;
     let turn = turn.map_err(|_| Problem::fault())?;
     let done = tokio::task::spawn_blocking(move || {
         let done = work();
@@ -161,7 +161,7 @@ impl Person {
     pub async fn set_password(&self, old: &str, new: &str) -> Result<(), Problem> {
         let passwords = self.app.passwords()?;
         if !LENGTH.contains(&new.chars().count()) || new == self.account.login || new.chars().any(char::is_control) {
-            return Err(Problem::invalid("a password is 10 to 200 characters long, and not the login"));
+            return Err(Problem::invalid("a password must be 10 to 200 characters long, and not the login"));
         }
         self.at_browser()?;
         let mut transaction = self.app.0.database.read().await?;

@@ -99,7 +99,7 @@ impl Turns {
                 }
             }
             if tokio::time::timeout_at(until, changed).await.is_err() {
-                return Err(Problem::unavailable("too many archives are being looked through"));
+                return Err(Problem::unavailable("too many archives are being checked"));
             }
         }
     }

@@ -109,7 +109,7 @@ pub(crate) fn moment_schema() -> Schema {
 fn zone_schema() -> Schema {
     let names = ObjectBuilder::new().schema_type(Type::String).enum_values(Some(TZ_VARIANTS.map(Tz::name)));
     let null = ObjectBuilder::new().schema_type(Type::Null);
-    let words = "The time zone by whose calendar late days end; without it each has 24 hours.";
+    let words = "The time zone in which late days end; without it each has 24 hours.";
     OneOfBuilder::new().item(names).item(null).description(Some(words)).into()
 }
 
@@ -209,7 +209,7 @@ impl Settings {
     fn check(&self, suites: &Suites) -> Result<(), Problem> {
         let one_of = |name: &str, value: &Option<String>, known: &[&str]| match value {
             Some(value) if !known.contains(&value.as_str()) => {
-                Err(Problem::invalid(format!("{name} is one of {}", known.join(", "))))
+                Err(Problem::invalid(format!("{name} must be one of {}", known.join(", "))))
             }
             _ => Ok(()),
         };
@@ -220,20 +220,23 @@ impl Settings {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
         if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
-            return Err(Problem::invalid("forms is a list of program, sources and traces"));
+            return Err(Problem::invalid("forms must be a list of program, sources and traces"));
         }
-        ensure(is_file_name(&self.program), Problem::invalid("program is a plain file name"))?;
+        ensure(is_file_name(&self.program), Problem::invalid("program must be a plain file name"))?;
         if let Some(due) = self.due_at.filter(|due| !calendar::is_plausible(*due)) {
             return Err(Problem::invalid(format!(
-                "due_at is milliseconds since 1970, and {due} looks like seconds; write \
+                "due_at must be milliseconds since 1970, but {due} looks like seconds; write \
                  milliseconds, or a date such as 2026-12-01T23:59:00+01:00"
             )));
         }
         if self.late_days > 365 || self.late_percent > 100 {
-            return Err(Problem::invalid("late_days is at most 365, and late_percent at most 100"));
+            return Err(Problem::invalid("late_days must be at most 365, and late_percent at most 100"));
         }
-        ensure((1..=3600).contains(&self.seconds), Problem::invalid("seconds is between 1 and 3600"))?;
-        ensure((1..=1 << 30).contains(&self.max_bytes), Problem::invalid("max_bytes is between 1 and 1073741824"))?;
+        ensure((1..=3600).contains(&self.seconds), Problem::invalid("seconds must be between 1 and 3600"))?;
+        ensure(
+            (1..=1 << 30).contains(&self.max_bytes),
+            Problem::invalid("max_bytes must be between 1 and 1073741824"),
+        )?;
         Ok(())
     }
 

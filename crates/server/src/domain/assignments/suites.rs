@@ -75,7 +75,7 @@ impl Suites {
         match () {
             () if !is_name => Err(Problem::invalid(format!("suite is {}", self.describe()))),
             () if self.names.is_empty() || self.names.iter().any(|known| known == name) => Ok(()),
-            () => Err(Problem::conflict(format!("suite is {}", self.describe()), "name one that is there")),
+            () => Err(Problem::conflict(format!("suite is {}", self.describe()), "name an existing one")),
         }
     }
 

@@ -52,7 +52,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     }
     match places[1] {
         Some(_) => Ok(Some(places)),
-        None => Err(Problem::invalid("the first line names columns, and none of them login")),
+        None => Err(Problem::invalid("the first line names columns, but not login")),
     }
 }
 
@@ -60,7 +60,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
 fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
     if first.trim_start().starts_with(['{', '[']) {
-        return Err(Problem::invalid("this is JSON, and no table"));
+        return Err(Problem::invalid("this is JSON, not a table"));
     }
     // Spreadsheets of other countries separate by something else.
     let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
@@ -76,7 +76,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let mut lines = Vec::new();
     let mut counted = (0, 1);
     for (index, record) in reader.records().enumerate() {
-        let record = record.map_err(|error| Problem::invalid(format!("the table is not understood: {error}")))?;
+        let record = record.map_err(|error| Problem::invalid(format!("the table can't be read: {error}")))?;
         let cell = |text: &str| text.trim_start_matches('\u{feff}').to_owned();
         let words: Vec<String> = record.iter().map(cell).collect();
         if index == 0

@@ -31,7 +31,7 @@ from_row! { MemberInfo { login, name, role } }
 pub(in crate::domain) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
     identity::check_slug("a login", login)?;
     identity::check_title("a name", name)?;
-    if matches!(role, "student" | "staff") { Ok(()) } else { Err(Problem::invalid("a role is student or staff")) }
+    if matches!(role, "student" | "staff") { Ok(()) } else { Err(Problem::invalid("a role must be student or staff")) }
 }
 
 impl Staff {
@@ -163,7 +163,7 @@ impl Staff {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
         let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
         if goes && transaction.one(statement, values![self.course, self.account.id]).await?.int("n")? == 0 {
-            return Err(Problem::conflict("you are the last of the course's staff", "make somebody else staff before"));
+            return Err(Problem::conflict("you are the last of the course's staff", "make another member staff first"));
         }
         Ok(())
     }
@@ -216,7 +216,8 @@ impl Staff {
         let Some(row) = row else { return Err(Problem::not_found("member")) };
         let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
         if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
-            let detail = "this account is its person's own: more than a student of this course, or with a password";
+            let detail = "this account is the person's own: it is more than a student of this course, or has a \
+                password";
             return Err(Problem::not_allowed(detail));
         }
         let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;

@@ -19,7 +19,7 @@ use serde::Deserialize;
 use std::time::Instant;
 use url::Url;
 
-/// How long a sign-in may take, in milliseconds.
+/// The longest time that a sign-in may take, in milliseconds.
 const LOGIN: i64 = 10 * 60 * 1000;
 
 /// How long staff may take to choose.
@@ -112,7 +112,7 @@ impl Visitor {
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
         let bucket = throttle::bucket(self.secrets.address, &platform.name);
         if !self.app.0.throttle.pass(bucket, LOGINS, Instant::now()) {
-            return Err(Problem::too_many("too many people come from your address at this moment"));
+            return Err(Problem::too_many("too many people sign in from your address at this moment"));
         }
         // One word for several windows of a browser.
         let is_word = |word: &String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
@@ -190,7 +190,7 @@ impl Visitor {
 }
 
 fn unknown_login() -> Problem {
-    Problem::refused_launch("this sign-in is unknown, used, or was begun too long ago")
+    Problem::refused_launch("this sign-in is unknown, used or too old")
 }
 
 /// A sign-in that a platform was asked for: answered once, by the same browser, and soon.
@@ -283,7 +283,7 @@ async fn arrive(
     }
     enrol(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
-        ensure(staff, Problem::refused_launch("links are made by who teaches the course"))?;
+        ensure(staff, Problem::refused_launch("only teachers of the course can make links"))?;
         return choose(transaction, platform, arrival, account).await;
     };
     let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
@@ -373,10 +373,10 @@ async fn choose(
 async fn account(transaction: &mut Transaction, platform: &Platform, person: &LtiPerson) -> Result<i64, Problem> {
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
-    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is shut"))?;
+    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is closed"))?;
     // Otherwise anybody who runs a platform could do everything here.
     if row.flag("is_admin")? {
-        return Err(Problem::refused_launch("you are an administrator here, and sign in here yourself"));
+        return Err(Problem::refused_launch("you are an administrator of this server: sign in on its own pages"));
     }
     Ok(account)
 }

@@ -49,11 +49,11 @@ pub struct ScoreInfo {
     /// The score that it is to know.
     #[schema(value_type = Object)]
     pub score: Value,
-    /// When that became so, in milliseconds since 1970.
+    /// The time when that became so, in milliseconds since 1970.
     pub stamp: i64,
     /// When it took it; nothing while it has not.
     pub sent_at: Option<i64>,
-    /// Why it has not.
+    /// The reason why it has not.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
 }
@@ -96,7 +96,7 @@ impl Admin {
         // Accounts belong to an issuer's people: they must not become those of another.
         let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
         if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
-            return Err(Problem::conflict("another issuer is registered by this name", "give it another name"));
+            return Err(Problem::conflict("another issuer is registered under this name", "give it another name"));
         }
         let text = serde_json::to_string(wish).map_err(|_| Problem::fault())?;
         let statement = "INSERT INTO platform (name, issuer, client, settings, created_at) VALUES (?, ?, ?, ?, {now})
@@ -155,8 +155,8 @@ impl Staff {
         let places = transaction.rows(statement, values![self.course]).await?;
         drop(transaction);
         if places.is_empty() {
-            let detail = "no learning platform tells who is in this course";
-            return Err(Problem::conflict(detail, "open an assignment from the platform once, as who teaches there"));
+            let detail = "no learning platform has the members of this course";
+            return Err(Problem::conflict(detail, "open an assignment from the platform once, as a teacher there"));
         }
         let mut read = RosterRead::default();
         for row in &places {
@@ -231,7 +231,7 @@ impl Staff {
         if wish == RosterWish::Apply && left * 3 > before.len() {
             return Err(Problem::conflict(
                 format!("{left} of {} members would leave: {}", before.len(), read.goes.join(", ")),
-                "look at who comes and goes (preview), and confirm it (confirm)",
+                "check who would be added and removed (preview), then confirm it (confirm)",
             ));
         }
         let text = format!("{members} members by {}, {left} left", platform.name);

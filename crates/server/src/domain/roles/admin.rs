@@ -27,7 +27,7 @@ pub(in crate::domain) async fn make_course(
     let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
         ON CONFLICT (slug) DO NOTHING RETURNING id";
     let made = transaction.row(statement, values![slug, title]).await?;
-    let made = made.ok_or_else(|| Problem::conflict("there is a course of this name", "give it another name"))?;
+    let made = made.ok_or_else(|| Problem::conflict("a course has this name already", "give it another name"))?;
     Ok(made.int("id")?)
 }
 

@@ -41,7 +41,7 @@ impl Person {
     /// Returns the session, where it is the person at a browser: what a token can do, ends with the token.
     pub(in crate::domain) fn at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
-        session.ok_or_else(|| Problem::sign_in_again("a token can't do this, nor a session that was begun by one"))
+        session.ok_or_else(|| Problem::sign_in_again("a token can't do this, and neither can a session that it began"))
     }
 
     /// Returns the session if they signed in lately: anybody who finds an open browser makes no further ways in.
@@ -90,7 +90,7 @@ impl Person {
         let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![self.account.id]).await?;
         if count.int("n")? >= 50 {
-            return Err(Problem::conflict("an account has at most 50 tokens", "revoke those that nobody uses"));
+            return Err(Problem::conflict("an account has at most 50 tokens", "revoke unused ones"));
         }
         let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;
         transaction.commit().await?;

@@ -100,7 +100,7 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
     }
 
-    /// Says that a try came to nothing.
+    /// Says that a try failed.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -108,8 +108,7 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().fail(lease, &plain(fault, 2000)).await?.held)
     }
 
-    /// Brings a result. It is looked at as what a stranger says: of files it may name those that it stored for this
-    /// job.
+    /// Stores a result. A worker is not trusted: the result may name only files that the worker stored for this job.
     ///
     /// # Errors
     /// When it makes no sense.
@@ -131,20 +130,20 @@ impl Remote {
             let is_number = number.parse::<f64>().is_ok_and(f64::is_finite)
                 && number.len() <= 40
                 && number.bytes().all(|c| c.is_ascii_digit() || b"+-.eE".contains(&c));
-            ensure(is_number, Problem::invalid("points and seconds are numbers"))?;
+            ensure(is_number, Problem::invalid("points and seconds must be numbers"))?;
         }
         let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
         if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MOST_POINTS))
             && !(0.0..=most.min(MOST_POINTS)).contains(&points)
         {
-            return Err(Problem::invalid("points lie between 0 and the most that could be had"));
+            return Err(Problem::invalid("points must be between 0 and the maximum"));
         }
         let mut outcome = outcome.clone();
         outcome.verdict = plain(&outcome.verdict, 200);
         outcome.summary = plain(&outcome.summary, 2000);
         outcome.version = plain(&outcome.version, 60);
         let is_digest = |text: &str| text.parse::<Digest>().is_ok();
-        ensure(outcome.grader.is_empty() || is_digest(&outcome.grader), Problem::invalid("grader is a digest"))?;
+        ensure(outcome.grader.is_empty() || is_digest(&outcome.grader), Problem::invalid("grader must be a digest"))?;
         let mut transaction = self.app.0.database.first().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {

@@ -16,7 +16,7 @@ pub struct Secrets {
     pub session: Option<String>,
     /// The word of a browser that comes from a learning platform.
     pub browser: Option<String>,
-    /// Where the request comes from.
+    /// The place where the request comes from.
     pub address: Option<IpAddr>,
 }
 

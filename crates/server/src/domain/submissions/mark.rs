@@ -12,7 +12,7 @@ use crate::{
     values,
 };
 
-/// How long a comment or a request may be.
+/// The greatest length of a comment or a request.
 const LONGEST: usize = 2000;
 
 /// A student's work on an assignment.
@@ -89,7 +89,7 @@ impl Staff {
                 && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
         };
         if points.is_some_and(|points| !is_number(points)) {
-            return Err(Problem::invalid("points are a number between 0 and a million, such as 7.5"));
+            return Err(Problem::invalid("points must be a number between 0 and a million, such as 7.5"));
         }
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
@@ -179,7 +179,7 @@ impl Staff {
         identity::check_slug("a login", login)?;
         if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
             return Err(Problem::invalid(
-                "due_at is milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00",
+                "due_at must be milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00",
             ));
         }
         let mut transaction = self.begin().await?;
@@ -219,7 +219,7 @@ impl Member {
         }
         let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
         if before.chars().count() + text.chars().count() > 5 * LONGEST {
-            return Err(Problem::conflict("all that you asked is too long by now", "speak with the course's staff"));
+            return Err(Problem::conflict("your requests are too long together", "speak with the course's staff"));
         }
         let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
         let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})

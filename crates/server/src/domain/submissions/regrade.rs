@@ -13,7 +13,7 @@ use utoipa::ToSchema;
 /// Changes that are told at one time, at most.
 const CHANGES: i64 = 1000;
 
-/// Where a regrade is.
+/// The place where a regrade is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum RegradeState {
@@ -30,9 +30,9 @@ pub enum RegradeState {
 pub struct Regrade {
     /// The regrade's number.
     pub id: i64,
-    /// Where it is.
+    /// The place where it is.
     pub state: RegradeState,
-    /// Why it is done, as students read it when it is applied.
+    /// The reason why it is done, as students read it when it is applied.
     pub reason: String,
     /// The settings by which submissions are graded this time.
     pub settings: Settings,
@@ -40,7 +40,7 @@ pub struct Regrade {
     pub by: String,
     /// When, in milliseconds since 1970.
     pub created_at: i64,
-    /// How many submissions it grades.
+    /// The number of submissions that it grades.
     pub submissions: usize,
     /// How many of them are still to be graded.
     pub left: usize,
@@ -151,10 +151,10 @@ impl Staff {
             self.app.0.notifier.commit(transaction).await?;
             return Err(Problem::conflict(
                 match missing {
-                    1 => "1 submission came in meanwhile, and is graded now".to_owned(),
-                    _ => format!("{missing} submissions came in meanwhile, and are graded now"),
+                    1 => "1 submission arrived meanwhile, and is graded now".to_owned(),
+                    _ => format!("{missing} submissions arrived meanwhile, and are graded now"),
                 },
-                "look at them, and apply then",
+                "check them, then apply",
             ));
         }
         let statement = "SELECT count(*) AS n FROM job WHERE campaign = ? AND state IN ('waiting', 'running')";
@@ -316,7 +316,7 @@ fn why(row: &Row) -> Result<Vec<String>, DbError> {
         differ("program", old.program, new.program);
     }
     if why.is_empty() {
-        let words = "graded by the same, with another result: the program does not always do the same, or was slow";
+        let words = "graded in the same way, with another result: the program's output varies, or it was slow";
         why.push(words.to_owned());
     }
     Ok(why)

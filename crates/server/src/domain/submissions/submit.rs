@@ -19,8 +19,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How long an upload that came waits until all that came before are written: at a deadline nobody is sent away whom
-/// the server let in.
+/// The time that an upload that came waits until all that came before are written: at a deadline nobody is sent away
+/// whom the server let in.
 const CROWD: Duration = Duration::from_secs(240);
 
 const MINUTE: i64 = 60 * 1000;
@@ -171,7 +171,7 @@ impl Member {
             transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
         let due = mark::due(transaction, assignment, self.account.id).await?;
         if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
-            return Err(Problem::conflict("the assignment was due before", "ask the course's staff"));
+            return Err(Problem::conflict("the due date is over", "ask the course's staff"));
         }
         if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
             return Err(Problem::conflict(
@@ -183,7 +183,7 @@ impl Member {
             // Until the oldest of this hour is an hour old.
             let again = row.int("oldest")? + HOUR;
             let detail = format!(
-                "at most {} submissions in an hour: the next one is taken from {} UTC",
+                "at most {} submissions in an hour: the next one is possible from {} UTC",
                 settings.per_hour,
                 calendar::minute(again + MINUTE - 1)
             );

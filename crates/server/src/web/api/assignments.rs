@@ -1,4 +1,4 @@
-//! Assignments, and how a class stands in them.
+//! Assignments, and a class's results.
 use super::super::{
     input::{AddressParts, Body, QueryInput, SeenEvent, whole_numbers},
     look, upload,
@@ -122,14 +122,14 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
         return Err(Problem::no_suite("the archive has no suite.toml at its top, in UTF-8"));
     };
     let suite: toml::Table =
-        text.parse().map_err(|error| Problem::no_suite(format!("suite.toml is not understood: {error}")))?;
+        text.parse().map_err(|error| Problem::no_suite(format!("suite.toml can't be read: {error}")))?;
     let groups = || suite.get("group").and_then(toml::Value::as_array).into_iter().flatten();
     let hides =
         groups().filter_map(|group| group.get("visibility")?.as_str()).any(|visibility| visibility != "visible");
     let scenes = groups().filter_map(|group| group.get("scenes")?.as_array()).flatten().filter_map(toml::Value::as_str);
     for scene in scenes {
         if scene.starts_with('/') || scene.split('/').any(|part| part == "..") {
-            return Err(Problem::no_suite(format!("the scene {scene} does not lie in the archive")));
+            return Err(Problem::no_suite(format!("the scene {scene} is not in the archive")));
         }
     }
     let name = suite.get("name").and_then(toml::Value::as_str).unwrap_or_default().chars().take(200).collect();
@@ -150,7 +150,7 @@ pub(super) async fn export(
     let (kind, body) = match format {
         "csv" => ("text/csv; charset=utf-8", HttpBody::from(table(&staff, &assignment).await?)),
         "jsonl" => ("application/jsonl; charset=utf-8", lines(staff, &assignment).await?),
-        _ => return Err(Problem::invalid("format is csv or jsonl")),
+        _ => return Err(Problem::invalid("format must be csv or jsonl")),
     };
     Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
 }

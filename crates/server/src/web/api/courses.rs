@@ -45,10 +45,7 @@ pub(super) async fn remove_course(
     QueryInput(asked): QueryInput<Confirm>,
 ) -> Result<StatusCode, Problem> {
     if asked.confirm != course {
-        return Err(Problem::conflict(
-            "confirm is another name than the course's",
-            "name the course once more in confirm",
-        ));
+        return Err(Problem::conflict("confirm must be the course's name", "name the course once more in confirm"));
     }
     admin.remove_course(&course).await?;
     Ok(StatusCode::NO_CONTENT)
@@ -70,7 +67,7 @@ pub(super) struct Preview {
 /// Makes all members of a table: `name,login,email,role`, or as its first line names them. If anything is wrong with a
 /// line, nothing is done.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
-    params(("preview" = Option<bool>, Query, description = "Only look at the table"), SeenEvent),
+    params(("preview" = Option<bool>, Query, description = "Only check the table"), SeenEvent),
     request_body(content = String, content_type = "text/csv"),
     responses((status = 200, body = Vec<MemberLine>)))]
 pub(super) async fn import(

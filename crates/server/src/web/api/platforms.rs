@@ -19,8 +19,8 @@ pub(super) struct RosterParameters {
 
 /// Reads who is in the course from the platforms that it is connected with.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/roster", tag = "courses",
-    params(("preview" = Option<bool>, Query, description = "Only say who would come and go"),
-        ("confirm" = Option<bool>, Query, description = "Also when more than a third leaves")),
+    params(("preview" = Option<bool>, Query, description = "Only report who would be added and removed"),
+        ("confirm" = Option<bool>, Query, description = "Also if more than a third would be removed")),
     responses((status = 200, body = RosterRead)))]
 pub(super) async fn roster(
     staff: Staff,

@@ -30,9 +30,10 @@ pub(super) struct UploadParameters {
 /// Hands in: the body is the file, or a form (`multipart/form-data`) with a field `file`. With an `Idempotency-Key` the
 /// same upload sent twice is one submission: 201 the first time, 200 from then on.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
-    params(("name" = Option<String>, Query, description = "What the file is called"),
-        ("form" = Option<String>, Query, description = "program, sources or traces; told from the file otherwise"),
-        ("Idempotency-Key" = Option<String>, Header, description = "A name of the sender's own for this upload")),
+    params(("name" = Option<String>, Query, description = "The file's name"),
+        ("form" = Option<String>, Query, description = "program, sources or traces; otherwise recognized from the \
+            file"),
+        ("Idempotency-Key" = Option<String>, Header, description = "The sender's own name for this upload")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 201, body = Submission), (status = 200, body = Submission)))]
 pub(super) async fn submit(
@@ -84,7 +85,7 @@ pub(in crate::web) async fn receive(
     };
     let key = of_page.as_deref().or(key);
     if key.is_some_and(|key| !(1..=200).contains(&key.len()) || key.chars().any(char::is_control)) {
-        return Err(Problem::invalid("a key is 1 to 200 characters long"));
+        return Err(Problem::invalid("a key must be 1 to 200 characters long"));
     }
     member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, came_at }).await
 }

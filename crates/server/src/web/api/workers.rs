@@ -40,10 +40,10 @@ answers! { OK:
     /// Gives a job back at no cost.
     post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> LeaseAnswer:
         remote.release(&lease);
-    /// Says that a try came to nothing.
+    /// Says that a try failed.
     post "/api/v1/worker/fail" "workers"
         fail(remote: Remote, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
-    /// Brings a result.
+    /// Stores a result.
     post "/api/v1/worker/finish" "workers"
         finish(remote: Remote, result: FinishedJob) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
 }

@@ -137,7 +137,7 @@ pub(super) async fn course(member: Member) -> Page {
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
     let slug = form.slug.trim();
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
-        return Err(Problem::conflict("there is an assignment of this name", "give it another name"));
+        return Err(Problem::conflict("an assignment has this name already", "give it another name"));
     }
     let change =
         AssignmentChange { title: Some(form.title.trim()), visible: Some(false), ..AssignmentChange::default() };

@@ -23,7 +23,7 @@ struct GradesPage {
     assignment: Assignment,
     standings: Vec<Standing>,
     look: Look,
-    /// How many students were found.
+    /// The number of students that were found.
     found: usize,
     before: Option<String>,
     after: Option<String>,

@@ -18,7 +18,7 @@ pub(super) struct Confirmation {
 
 impl Confirmation {
     fn is(&self, what: &str) -> Result<(), Problem> {
-        if self.confirm == what { Ok(()) } else { Err(Problem::invalid("this form is of something else")) }
+        if self.confirm == what { Ok(()) } else { Err(Problem::invalid("this form belongs to something else")) }
     }
 }
 

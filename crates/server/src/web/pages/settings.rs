@@ -118,7 +118,7 @@ pub(super) struct NewSettings {
 impl NewSettings {
     fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         let megabytes: f64 = parsed("the largest upload", &self.megabytes)?;
-        ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload is at most 1024 MiB"))?;
+        ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload must be at most 1024 MiB"))?;
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
         Ok(Settings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),

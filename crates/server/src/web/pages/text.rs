@@ -45,7 +45,7 @@ pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
-        _ => "somebody has to look".to_owned(),
+        _ => "staff must look at it".to_owned(),
     }
 }
 
@@ -102,7 +102,7 @@ pub(super) fn state(state: &str) -> &'static str {
         "waiting" => "waiting",
         "running" => "being graded",
         "done" => "graded",
-        "buried" => "the grader failed: nobody's fault here, and staff knows",
+        "buried" => "the grader failed: not your fault, and staff is informed",
         _ => "taken out of the queue",
     }
 }

@@ -65,7 +65,7 @@ async fn a_refusal_names_what_is_taken(fresh: Fresh) {
     let problem = admin.send("PUT", &format!("{ASSIGNMENT}/suite"), &[], b"").expect(422).json();
     assert_eq!([&problem["title"], &problem["detail"]], ["This is not a suite", "the file is empty"]);
     let page = post_file(&admin, "/c/physics/a/m1/suite", "suite.zip", b"text").expect(422).text();
-    assert!(page.contains("the assignment has the suite that it had"), "{page}");
+    assert!(page.contains("the assignment keeps its suite"), "{page}");
 }
 
 async fn the_hourly_limit_says_until_when(fresh: Fresh) {
@@ -85,7 +85,7 @@ async fn the_hourly_limit_says_until_when(fresh: Fresh) {
     let refused = ada.send("POST", &format!("{ASSIGNMENT}/submissions"), &[], &program("AC", 3)).expect(429);
     let wait: u64 = refused.header("retry-after").and_then(|wait| wait.parse().ok()).expect("seconds");
     assert!((400..=600).contains(&wait), "ten minutes are left of the hour: {wait}");
-    assert!(refused.text().contains("the next one is taken from 20"), "{}", refused.text());
+    assert!(refused.text().contains("the next one is possible from 20"), "{}", refused.text());
     // They hold for students.
     let page = admin.get("/c/physics/a/m1").expect(200).text();
     assert!(!page.contains("in an hour"), "{page}");
@@ -113,7 +113,7 @@ async fn a_browser_gets_pages_and_goes_on_where_it_wanted(fresh: Fresh) {
     }
     // Forms that a session by a token may not send are not there.
     let page = admin.get("/account").expect(200).text();
-    assert!(page.contains("You came in by a token") && !page.contains("Make a token"), "{page}");
+    assert!(page.contains("You signed in with a token") && !page.contains("Make a token"), "{page}");
     assert!(session.get("/account").expect(200).text().contains("Make a token"));
     // Refusals are pages for a browser, and problems for programs.
     let html = ("Accept", "text/html,*/*;q=0.8");

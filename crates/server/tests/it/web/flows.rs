@@ -163,7 +163,7 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     set(r#"{"attempts": 0, "per_hour": 1}"#).expect(200);
     send(&program("AC", 2)).expect(429);
     set(r#"{"due_at": 1}"#).expect(200);
-    assert!(send(&program("AC", 2)).expect(409).text().contains("was due before"));
+    assert!(send(&program("AC", 2)).expect(409).text().contains("due date is over"));
     set(r#"{"forms": ["sources"], "due_at": null, "per_hour": 0}"#).expect(200);
     send(&program("AC", 2)).expect(422);
     // Settings that make no sense, and hidden assignments.
@@ -222,7 +222,7 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     let late = ada.submit("physics", &program("WA", 60));
     assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "60");
     let problem = admin.post_json(&format!("{base}/{id}/apply"), "").expect(409).json();
-    assert_eq!(problem["detail"], "1 submission came in meanwhile, and is graded now");
+    assert_eq!(problem["detail"], "1 submission arrived meanwhile, and is graded now");
     assert_eq!(finished()["submissions"], 3);
     let page = admin.get(&format!("/c/physics/a/m1/regrades/{id}")).expect(200).text();
     assert!(page.contains("rules of the suite before, parity now"), "{page}");

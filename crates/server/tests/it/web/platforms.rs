@@ -110,7 +110,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     let scores = teacher.get(&format!("{base}/scores")).expect(200).json();
     assert_eq!([&scores[0]["login"], &scores[0]["platform"]], ["ada", "lms"]);
     let page = teacher.get("/c/physics/a/m1/class").expect(200).text();
-    assert!(page.contains("40 of 100") && page.contains("somebody has to look"), "{page}");
+    assert!(page.contains("40 of 100") && page.contains("staff must look at it"), "{page}");
     // Sent once more, it is newer than everything before.
     let before = platform.wait_for("ada", |_| true)["timestamp"].clone();
     teacher.post_form("/c/physics/a/m1/scores", "").expect(303);
@@ -269,7 +269,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     admin.send("PUT", &format!("/api/v1/accounts/{account}"), JSON, wish).expect(200);
     let begun = begin(&server, &platform);
     let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", INSTRUCTOR));
-    assert!(come(&server, &begun, &token).expect(403).text().contains("sign in here yourself"));
+    assert!(come(&server, &begun, &token).expect(403).text().contains("sign in on its own pages"));
     // A list without an end is given up, and changes nothing.
     teacher.post_form("/c/physics/members/roster", "confirm=yes").expect(303);
     platform.inside().published.clear();

@@ -57,7 +57,7 @@ rows! {
     Wrong ParticleEdge {
         ParticleEdgeEmpty "pe-empty": "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap, alpha > 0, alpha < 1 and approach are expected for each pair.";
         ParticleEdgeZero "pe-zero": "The coefficients are left at zero." =>
-            "Every coefficient is 0, but those of the supplied approach.";
+            "Every coefficient is 0, except those of the supplied approach.";
         ParticleEdgeReversed "pe-reversed": "The coefficients are handed over lowest power first." =>
             "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
         ParticleEdgeSwapped "pe-swapped": "The first two polynomials are handed over in the wrong order." =>

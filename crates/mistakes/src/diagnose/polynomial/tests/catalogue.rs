@@ -54,7 +54,7 @@ fn scene(numbers: &mut Numbers, style: Style) -> Scene {
     }
 }
 
-/// How many polynomials a student hands over for a pair.
+/// The number of polynomials that a student hands over for a pair.
 fn handed_over(row: &Row, kind: PairKind) -> usize {
     match row.id {
         "handover-position-only" => kind.polynomials() - 1,

@@ -30,7 +30,7 @@ pub(super) const TWO_ROW: usize = 8;
 /// Where what is known about it stands.
 pub(super) const TWO_KNOWN: usize = 3;
 
-/// Where the line begins.
+/// The place where the line begins.
 pub(super) const LINE: usize = 4;
 
 /// Numbers behind a row that may be read, too, whatever their values: as many as a polynomial has coefficients, and two
