@@ -447,7 +447,7 @@ fn a_course_script_counts_with_the_drop_in() {
     }
     symlink(env!("CARGO_BIN_EXE_fosssim-oracle"), workspace.path("FOSSSimOracle")).expect("a link");
     let count = |program: &Path| {
-        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/course/run_tests.py");
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("integrations/course/run_tests.py");
         let mut run = Command::new("python3");
         run.arg(script).arg("--program").arg(program).arg("--oracle").arg(workspace.path("FOSSSimOracle"));
         run.arg(workspace.path("scenes")).stdout(Stdio::piped());

@@ -20,7 +20,7 @@ fn with_python() -> Option<Workspace> {
 }
 
 fn script(name: &str) -> Command {
-    let mut command = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts").join(name));
+    let mut command = Command::new(Path::new(env!("CARGO_MANIFEST_DIR")).join("integrations").join(name));
     command.env_clear().env("PATH", std::env::var_os("PATH").unwrap_or_default());
     command
 }
@@ -199,7 +199,7 @@ fn the_action_for_github_writes_summary_report_and_points() {
     }
     // The script that the action runs is there, and its inputs are those that the script reads.
     let action = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("action.yml")).expect("the action");
-    for name in ["scripts/github/grade", "FOSSSIM_SUBMISSION", "FOSSSIM_SUITE", "FOSSSIM_OUTPUT"] {
+    for name in ["integrations/github/grade", "FOSSSIM_SUBMISSION", "FOSSSIM_SUITE", "FOSSSIM_OUTPUT"] {
         assert!(action.contains(name), "{name}");
     }
 }

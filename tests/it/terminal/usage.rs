@@ -129,7 +129,7 @@ fn the_course_script_says_in_a_sentence_that_a_program_is_missing() {
     let workspace = Workspace::new();
     workspace.write("scenes/bounce.xml", BOUNCE);
     workspace.write("plain", "no program");
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/course/run_tests.py");
+    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/integrations/course/run_tests.py");
     symlink(env!("CARGO_BIN_EXE_fosssim-oracle"), workspace.path("FOSSSimOracle")).expect("a link");
     for (program, oracle, says) in [
         ("./missing", "./FOSSSimOracle", "there is no program at "),

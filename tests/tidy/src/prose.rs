@@ -113,7 +113,7 @@ const BRITISH: [&str; 14] = [
 
 #[test]
 fn spelling_is_american() {
-    let folders = ["src", "crates", "docs", "tests", "examples", "python", "scripts", "benches"];
+    let folders = ["src", "crates", "docs", "tests", "examples", "python", "scripts", "integrations", "benches"];
     let is_read = |path: &PathBuf| {
         let kinds = [".rs", ".md", ".js", ".html", ".css", ".toml", ".py", ".snap"];
         kinds.iter().any(|kind| name(path).ends_with(kind)) && !path.ends_with("prose.rs")

@@ -21,7 +21,7 @@ struct Results {
     tests: Vec<Test>,
 }
 
-/// A group of the suite: PrairieLearn keeps it for the element `fosssim-report` (`scripts/prairielearn`).
+/// A group of the suite: PrairieLearn keeps it for the element `fosssim-report` (`integrations/prairielearn`).
 #[derive(Serialize)]
 struct Group {
     name: String,

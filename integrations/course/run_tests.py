@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Runs a program on a folder of scenes, has every trace graded by the drop-in oracle, and counts.
 
-    scripts/course/run_tests.py --program ./FOSSSim --oracle ./FOSSSimOracle scenes/
+    integrations/course/run_tests.py --program ./FOSSSim --oracle ./FOSSSimOracle scenes/
 
 The oracle is any program with the original's command line: fosssim-oracle called through a link whose name starts with
 FOSSSimOracle is one. This script trusts the program it runs; `fosssim-oracle grade` does not.
