@@ -4,6 +4,7 @@ use crate::{
     execute::Runner,
     grade::Grade,
     grader::{SubmissionGrading, lock},
+    guard::guarded,
     located::{Contents, FailureKind, LocatedFailure, TriedScene, locate},
     milestone, one_file, patience,
     plan::PlannedGroup,
@@ -72,7 +73,8 @@ impl SubmissionGrading<'_> {
         }
         settle(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
-            grade.smallest = self.smallest(&grade, staged, describe);
+            // A fault here is no reason to lose the grade.
+            grade.smallest = guarded(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
         }
         grade
     }
@@ -105,7 +107,6 @@ impl SubmissionGrading<'_> {
             if cause.scenes.iter().any(|task| is_visible(&task.name)) {
                 cause.scenes.retain(|task| is_visible(&task.name));
             }
-            // A fault here is no reason to lose the grade.
             let small = shrinker.smallest(&cause, &mut |_| {}).ok().flatten();
             let told = small.map(|small| tell(&small, plan.student_hints(&small.origin)));
             found.extend(told.filter(|told| found.iter().all(|one| one.xml != told.xml)));
