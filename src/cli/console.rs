@@ -64,8 +64,8 @@ pub(super) fn style() -> Style {
 
 /// Returns whether the locale's characters are UTF-8: of these variables the first that is set decides.
 fn shows_signs() -> bool {
-    let set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(|name| std::env::var(name).ok());
-    let name = set.filter(|value| !value.is_empty()).next().unwrap_or_default().to_lowercase();
+    let mut set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(|name| std::env::var(name).ok());
+    let name = set.find(|value| !value.is_empty()).unwrap_or_default().to_lowercase();
     name.contains("utf-8") || name.contains("utf8")
 }
 
