@@ -12,6 +12,9 @@ use std::f64::consts::SQRT_2;
 /// Scenes with at least one edge for this many particles have boxes with four axes.
 const PARTICLES_PER_EDGE: usize = 100;
 
+/// Boxes are compared on y as many at a time.
+const BLOCK: usize = 8;
+
 /// The bodies in the order in which the search before has left them.
 ///
 /// A force at certain positions depends on it where bodies begin at the same place: it belongs to a state.
@@ -29,6 +32,10 @@ pub(super) struct Sweep {
     edges: Vec<([usize; 2], f64)>,
     particle_boxes: Vec<BodyExtent>,
     edge_boxes: Vec<BodyExtent>,
+    /// The lower and upper ends on y of the particles' boxes, side by side for many comparisons at a time.
+    heights: [Vec<f64>; 2],
+    /// The memory to sort boxes.
+    sorting: (Vec<u128>, Vec<BodyExtent>),
     /// The greatest end on x of the edges up to each.
     furthest: Vec<f64>,
 }
@@ -37,8 +44,6 @@ pub(super) struct Sweep {
 #[derive(Debug, Clone, Copy, Default)]
 struct BodyExtent {
     body: u32,
-    /// The body's place in the order before.
-    rank: u32,
     low: [f64; 4],
     high: [f64; 4],
 }
@@ -53,6 +58,8 @@ impl Sweep {
             edges: scene.edges.iter().map(|edge| ([edge.first, edge.second], edge.radius)).collect(),
             particle_boxes: Vec::with_capacity(scene.particles.len()),
             edge_boxes: Vec::with_capacity(edges),
+            heights: Default::default(),
+            sorting: Default::default(),
             furthest: Vec::with_capacity(edges),
         }
     }
@@ -75,7 +82,7 @@ impl Sweep {
 
     /// Sorts the bodies anew, for positions `x` (2N).
     pub fn update(&mut self, x: &[f64]) {
-        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, furthest } = self;
+        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, heights, sorting, furthest } = self;
         let particle = |body: u32| {
             let place = at(x, body as usize);
             BodyExtent::around(body, [place; 2], radii[body as usize], *has_four_axes)
@@ -84,8 +91,11 @@ impl Sweep {
             let (ends, radius) = edges[body as usize];
             BodyExtent::around(body, ends.map(|end| at(x, end)), radius, *has_four_axes)
         };
-        sort(particle_boxes, radii.len(), particle);
-        sort(edge_boxes, edges.len(), edge);
+        sort(particle_boxes, radii.len(), sorting, particle);
+        sort(edge_boxes, edges.len(), sorting, edge);
+        heights.iter_mut().for_each(Vec::clear);
+        heights[0].extend(particle_boxes.iter().map(|one| one.low[1]));
+        heights[1].extend(particle_boxes.iter().map(|one| one.high[1]));
         furthest.clear();
         furthest.extend(edge_boxes.iter().scan(f64::NEG_INFINITY, |furthest, one| {
             *furthest = furthest.max(one.high[0]);
@@ -95,13 +105,46 @@ impl Sweep {
 
     /// Hands all near pairs of particles to `hear`, the smaller number first.
     pub fn particles(&self, mut hear: impl FnMut(usize, usize)) {
-        for (index, one) in self.particle_boxes.iter().enumerate() {
-            for other in self.particle_boxes[index + 1..].iter().take_while(|other| !(other.low[0] > one.high[0])) {
-                if one.overlaps(other) {
-                    let (one, other) = (one.body as usize, other.body as usize);
-                    hear(one.min(other), one.max(other));
+        let boxes = &self.particle_boxes[..];
+        let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {
+            if one.overlaps(other) {
+                let (one, other) = (one.body as usize, other.body as usize);
+                hear(one.min(other), one.max(other));
+            }
+        };
+        let begins_behind = |other: &BodyExtent, one: &BodyExtent| other.low[0] > one.high[0];
+        // A box that begins nowhere parts the order into several.
+        let is_one_order = boxes.iter().all(|one| !one.low[0].is_nan());
+        let mut end = 0;
+        for (index, one) in boxes.iter().enumerate() {
+            if !is_one_order {
+                let near = boxes[index + 1..].iter().take_while(|other| !begins_behind(other, one));
+                near.for_each(|other| hear_if_near(one, other));
+                continue;
+            }
+            // Boxes of like sizes end one after the other, so the end of the near ones moves little.
+            end = end.max(index + 1);
+            while end < boxes.len() && !begins_behind(&boxes[end], one) {
+                end += 1;
+            }
+            while end > index + 1 && begins_behind(&boxes[end - 1], one) {
+                end -= 1;
+            }
+            let (lows, more_lows) = self.heights[0][index + 1..end].as_chunks::<BLOCK>();
+            let (highs, _) = self.heights[1][index + 1..end].as_chunks::<BLOCK>();
+            for (block, (lows, highs)) in lows.iter().zip(highs).enumerate() {
+                // As wide as the numbers, so that several are compared at a time.
+                let mut far = [0_u64; BLOCK];
+                for ((far, low), high) in far.iter_mut().zip(lows).zip(highs) {
+                    *far = u64::from(one.low[1] > *high) | u64::from(*low > one.high[1]);
+                }
+                if far.iter().sum::<u64>() < BLOCK as u64 {
+                    let first = index + 1 + block * BLOCK;
+                    let found = boxes[first..].iter().zip(far).filter(|(_, far)| *far == 0);
+                    found.for_each(|(other, _)| hear_if_near(one, other));
                 }
             }
+            boxes[end - more_lows.len()..end].iter().for_each(|other| hear_if_near(one, other));
         }
     }
 
@@ -122,17 +165,33 @@ impl Sweep {
 /// Makes the boxes of `count` bodies, and sorts them as they begin on x: from the order that they have, if they have
 /// one. By insertion, which the original does then, no body passes one that begins nowhere.
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
-fn sort(boxes: &mut Vec<BodyExtent>, count: usize, make: impl Fn(u32) -> BodyExtent) {
+fn sort(
+    boxes: &mut Vec<BodyExtent>,
+    count: usize,
+    (keys, sorted): &mut (Vec<u128>, Vec<BodyExtent>),
+    make: impl Fn(u32) -> BodyExtent,
+) {
     if boxes.is_empty() {
         boxes.extend((0..count as u32).map(make));
         return introsort::sort(boxes, |one| one.low[0]);
     }
-    (0..).zip(&mut *boxes).for_each(|(rank, one)| *one = BodyExtent { rank, ..make(one.body) });
-    for part in boxes.split_mut(|one| one.low[0].is_nan()) {
-        // Adding zero makes -0 the same as 0.
-        let key = |one: &BodyExtent| one.low[0] + 0.0;
-        part.sort_unstable_by(|one, other| key(one).total_cmp(&key(other)).then(one.rank.cmp(&other.rank)));
+    boxes.iter_mut().for_each(|one| *one = make(one.body));
+    // Whole numbers in the order of the places on x, then of the search before; bodies are brought there once.
+    keys.clear();
+    keys.extend(boxes.iter().zip(0_u32..).map(|(one, rank)| u128::from(rising(one.low[0])) << 32 | u128::from(rank)));
+    for part in keys.split_mut(|key| boxes[*key as u32 as usize].low[0].is_nan()) {
+        part.sort_unstable();
     }
+    sorted.clear();
+    sorted.extend(keys.iter().map(|key| boxes[*key as u32 as usize]));
+    std::mem::swap(boxes, sorted);
+}
+
+/// Returns a whole number that rises with a number, the same for both zeros.
+const fn rising(number: f64) -> u64 {
+    // Adding zero makes -0 the same as 0.
+    let bits = (number + 0.0).to_bits();
+    if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
 impl BodyExtent {
