@@ -24,7 +24,7 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     assert!(wrong[0]["error"].is_null() && wrong[1]["error"].is_string() && wrong[1]["line"] == 2, "{wrong}");
     let page =
         teacher.post_form("/c/physics/members/import", "table=Ada,ada%0AEve,e+v+e&import=yes").expect(200).text();
-    assert!(page.contains("nothing was done"), "{page}");
+    assert!(page.contains("no member was added"), "{page}");
     let table = "name,login,email,role\nAda,ada,ada@example.org,\nCarol,carol,,staff\nBoss,admin,,staff\n";
     let form = "table=name,login,email,role%0AAda,ada,ada@example.org,%0ACarol,carol,,staff%0ABoss,admin,,staff%0A";
     let page = teacher.post_form("/c/physics/members/import", form).expect(200).text();
