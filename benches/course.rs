@@ -145,7 +145,7 @@ fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a sound trace") {
         frame.polynomials.coefficients.iter_mut().for_each(|coefficient| *coefficient /= 3.0);
-        writer.frame(&frame);
+        writer.write_frame(&frame);
     }
     writer.finish().expect("memory").0
 }

@@ -107,7 +107,7 @@ pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
             frame.state.positions.fill(value);
             frame.state.velocities.fill(value);
         }
-        writer.frame(&frame);
+        writer.write_frame(&frame);
     }
     writer.finish().expect("writing to memory").0
 }

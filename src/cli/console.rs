@@ -111,7 +111,7 @@ pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
         return Ok(());
     }
     let mut stdout = io::stdout().lock();
-    unless_closed(stdout.write_all(text.as_ref()).and_then(|()| stdout.flush()))
+    ignore_closed_pipe(stdout.write_all(text.as_ref()).and_then(|()| stdout.flush()))
         .context("cannot write to standard output")
 }
 
@@ -128,7 +128,7 @@ pub(super) fn remark(text: impl AsRef<[u8]>) {
 }
 
 /// Turns the error of a closed pipe into success.
-pub(super) fn unless_closed(result: io::Result<()>) -> io::Result<()> {
+pub(super) fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         other => other,
@@ -195,7 +195,7 @@ impl Bar {
     }
 
     /// Shows the number of steps that are done.
-    pub(super) fn at(&mut self, step: u32) {
+    pub(super) fn show_step(&mut self, step: u32) {
         if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
             self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
         }
@@ -216,6 +216,6 @@ impl Drop for Bar {
 
 impl Progress for Bar {
     fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
-        self.at(step);
+        self.show_step(step);
     }
 }

@@ -55,7 +55,7 @@ fn end() -> ! {
 static MOVES: AtomicU64 = AtomicU64::new(0);
 
 /// Says that something moves: that nobody waits in vain.
-pub(super) fn still_at_work() {
+pub(super) fn show_activity() {
     MOVES.fetch_add(1, Ordering::Relaxed);
 }
 

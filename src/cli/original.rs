@@ -2,7 +2,7 @@
 use crate::original::{NO_PICTURE_FOLDER, Pictures, Services};
 use crate::{
     cli::output::Folder,
-    render::{Extent, Painter, PictureOptions, Raster, Size, film::png, svg},
+    render::{Extent, Painter, PictureOptions, Raster, Size, film::write_png, svg},
     sandbox,
     scene::Scene,
 };
@@ -58,7 +58,7 @@ impl PictureFolders {
         if let Some(folder) = &self.png {
             self.raster.draw(background, &shapes);
             let mut bytes = Vec::new();
-            png(&self.raster, &mut bytes)?;
+            write_png(&self.raster, &mut bytes)?;
             folder.write(&format!("frame{step:05}.png"), &bytes)?;
         }
         if let Some(folder) = &self.svg {

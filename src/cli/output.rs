@@ -7,7 +7,7 @@
 //! names are ours, and what has one of them already is replaced, a link, too.
 use super::{
     console,
-    interrupt::{clean_up_when_interrupted, pending, still_at_work},
+    interrupt::{clean_up_when_interrupted, pending, show_activity},
 };
 use crate::{
     files::{self, Identity, Place, Replacement, open_for_writing},
@@ -140,11 +140,11 @@ impl Output {
     /// # Errors
     /// When the last bytes or the rename fail; the target is then as it was before.
     pub(super) fn finish(mut self) -> Result<()> {
-        console::unless_closed(self.flush())?;
+        console::ignore_closed_pipe(self.flush())?;
         match self {
             Self::File(file) => {
                 let target = file.target();
-                finished(file).with_context(|| format!("cannot write {}", target.display()))
+                finish_file(file).with_context(|| format!("cannot write {}", target.display()))
             }
             _ => Ok(()),
         }
@@ -219,13 +219,13 @@ fn replaced(
 ) -> io::Result<()> {
     let mut file = begun(begin)?;
     fill(&mut file)?;
-    finished(file)
+    finish_file(file)
 }
 
 /// Begins a file, which an interrupt removes.
 fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
-    still_at_work();
+    show_activity();
     let mut pending = pending();
     let file = begin()?;
     pending.push(file.unfinished());
@@ -233,12 +233,12 @@ fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacem
 }
 
 /// Lets a file appear under its name.
-fn finished(file: Replacement) -> io::Result<()> {
+fn finish_file(file: Replacement) -> io::Result<()> {
     let mut pending = pending();
     let path = file.unfinished();
     let finished = file.finish();
     pending.retain(|waiting| *waiting != path);
-    still_at_work();
+    show_activity();
     finished
 }
 

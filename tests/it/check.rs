@@ -38,7 +38,7 @@ fn changed(scene: &str, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     }
     change(&mut frames);
     let mut writer = Writer::new(Vec::new(), layout);
-    frames.iter().for_each(|frame| writer.frame(frame));
+    frames.iter().for_each(|frame| writer.write_frame(frame));
     writer.finish().unwrap().0
 }
 

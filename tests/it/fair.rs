@@ -172,7 +172,7 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
             let lost = usize::from((number, index) == (17, 15) || (number, index) == (18, 15));
             frame.polynomials.push(&polynomial[lost..]);
         }
-        writer.frame(&frame);
+        writer.write_frame(&frame);
         number += 1;
     }
     let (_, fair) = judged(scene, &writer.finish().unwrap().0, 1);

@@ -55,7 +55,7 @@ fn trace() -> impl Strategy<Value = (Layout, Vec<Frame>)> {
 
 fn write(layout: Layout, frames: &[Frame]) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), layout);
-    frames.iter().for_each(|frame| writer.frame(frame));
+    frames.iter().for_each(|frame| writer.write_frame(frame));
     writer.finish().unwrap().0
 }
 
@@ -64,7 +64,7 @@ fn rewrite(mut reader: Reader<impl std::io::Read>) -> Result<Vec<u8>, TraceError
     let mut writer = Writer::new(Vec::new(), reader.layout());
     let mut frame = Frame::default();
     while reader.next(&mut frame)? {
-        writer.frame(&frame);
+        writer.write_frame(&frame);
     }
     Ok(writer.finish().unwrap().0)
 }

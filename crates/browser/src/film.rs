@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 use fosssim_render::{
     Extent, Painter, PictureOptions, Raster, Size,
-    film::{Gif, Rate, png},
+    film::{Gif, Rate, write_png},
     svg,
 };
 use fosssim_report::describe::no_result;
@@ -161,7 +161,7 @@ impl Film {
             PictureForm::Pixels => drawn().rgba().to_vec(),
             PictureForm::Png => {
                 let mut packed = Vec::new();
-                png(&drawn(), &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
+                write_png(&drawn(), &mut packed).map_err(|error| format!("the picture can't be encoded: {error}"))?;
                 packed
             }
         };
@@ -187,7 +187,7 @@ impl Film {
             Ok(())
         };
         let made = Gif::new(&mut bytes, size, rate, &colors).and_then(|mut film| {
-            draw(&mut |raster| film.picture(raster))?;
+            draw(&mut |raster| film.write_picture(raster))?;
             film.finish()
         });
         made.map_err(|error| format!("the film can't be encoded: {error}"))?;

@@ -225,7 +225,7 @@ impl Runner<'_> {
         watch: &mut dyn Progress,
     ) -> Result<Result<Outcome, String>, Fault> {
         let judged = guarded(|| {
-            fault::injected(Activity::Judging, &program.program);
+            fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
         // The judge has met an error here, if there is one.
@@ -281,7 +281,7 @@ impl Runner<'_> {
 
 /// Returns the result of a judged run with its explanations, or what panicked.
 fn explained(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
-    let mut explaining = guarded(|| fault::injected(Activity::Explaining, program)).err();
+    let mut explaining = guarded(|| fault::inject(Activity::Explaining, program)).err();
     let explain = |look: Look| {
         guarded(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);

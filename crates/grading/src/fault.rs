@@ -32,11 +32,11 @@ fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
 
 /// Lets tests have the grader fail: a program of this name makes it panic at this stage.
 #[cfg(test)]
-pub(super) fn injected(stage: Activity, program: &Path) {
+pub(super) fn inject(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let word = format!("{stage:?}").to_lowercase();
     assert!(name != format!("fault-while-{word}"), "a fault of the grader's own");
 }
 
 #[cfg(not(test))]
-pub(super) const fn injected(_: Activity, _: &Path) {}
+pub(super) const fn inject(_: Activity, _: &Path) {}

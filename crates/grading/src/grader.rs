@@ -297,7 +297,7 @@ impl<'a> SubmissionGrading<'a> {
 
     /// Finds or makes the result of a scene, by its number in the plan, keeps it, and tells it; with the last one, the
     /// grade.
-    pub(super) fn scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
+    pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
         });

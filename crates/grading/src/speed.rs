@@ -23,7 +23,7 @@ impl SubmissionGrading<'_> {
     /// Times the scenes of groups that mark speed, if all of the group's are accepted. Times that this machine took
     /// earlier for the same program stay. Timed runs have as much time as the graded ones; when it is used up, each
     /// further scene is timed once.
-    pub(super) fn time(&self, results: &mut [(SceneResult, bool)]) {
+    pub(super) fn time_scenes(&self, results: &mut [(SceneResult, bool)]) {
         let mut rest = results;
         let begin = Instant::now();
         for group in &self.grader.plan.groups {

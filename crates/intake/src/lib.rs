@@ -157,7 +157,7 @@ fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<
         folders: BTreeSet::new(),
         files: Vec::new(),
     };
-    walk.archive(file)?;
+    walk.walk_archive(file)?;
     Ok(walk.files)
 }
 
@@ -206,17 +206,17 @@ fn shown(name: &[u8]) -> String {
 
 impl Walk<'_> {
     /// Walks through an archive of any kind.
-    fn archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
+    fn walk_archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let start = start_of(&mut file).map_err(ArchiveError::Read)?;
         match FileKind::from_start(&start) {
-            FileKind::Archive(ArchiveKind::Zip) => self.zip(file),
-            FileKind::Archive(ArchiveKind::TarGz) => self.tar(GzDecoder::new(BufReader::new(file))),
-            FileKind::Archive(ArchiveKind::Tar) => self.tar(BufReader::new(file)),
+            FileKind::Archive(ArchiveKind::Zip) => self.walk_zip(file),
+            FileKind::Archive(ArchiveKind::TarGz) => self.walk_tar(GzDecoder::new(BufReader::new(file))),
+            FileKind::Archive(ArchiveKind::Tar) => self.walk_tar(BufReader::new(file)),
             FileKind::Program | FileKind::Other => Err(ArchiveError::Unknown(described(&start))),
         }
     }
 
-    fn zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
+    fn walk_zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let announced = announced(&mut file).map_err(ArchiveError::Read)?;
         // The library reads the list of all before it shows one.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
@@ -240,15 +240,15 @@ impl Walk<'_> {
                 return Err(ArchiveError::Kind(shown(&name)));
             }
             if entry.is_dir() {
-                self.folder(&name)?;
+                self.note_folder(&name)?;
             } else {
-                self.file(&name, mode.is_some_and(|mode| mode & 0o111 != 0), &mut entry)?;
+                self.unpack_file(&name, mode.is_some_and(|mode| mode & 0o111 != 0), &mut entry)?;
             }
         }
         Ok(())
     }
 
-    fn tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
+    fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
         let meter = Meter::new(self.limits.bytes.saturating_add(BESIDE * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
         // The name that a header of its own gives the next file. The library would read such a header whole.
@@ -277,10 +277,10 @@ impl Walk<'_> {
             }
             let name = long_name.take().unwrap_or_else(|| entry.path_bytes().into_owned());
             match kind {
-                tar::EntryType::Directory => self.folder(&name)?,
+                tar::EntryType::Directory => self.note_folder(&name)?,
                 tar::EntryType::Regular | tar::EntryType::Continuous => {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
-                    self.file(&name, executable, &mut entry)?;
+                    self.unpack_file(&name, executable, &mut entry)?;
                 }
                 // Says something about the archive, and is no entry of it.
                 tar::EntryType::XGlobalHeader => {}
@@ -317,7 +317,7 @@ impl Walk<'_> {
     }
 
     /// Notes the folders above a file; none of them may be a file.
-    fn within_folders(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
+    fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
             if self.seen.contains(folder) {
                 return Err(ArchiveError::Twice(shown(name)));
@@ -327,24 +327,24 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
+    fn note_folder(&mut self, name: &[u8]) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
         if path.iter().any(is_litter) {
             return Ok(());
         }
-        self.within_folders(&path.join("a file"), name)?;
+        self.note_folders_above(&path.join("a file"), name)?;
         if let Some(folder) = self.folder {
             fs::create_dir_all(folder.join(path)).map_err(ArchiveError::Folder)?;
         }
         Ok(())
     }
 
-    fn file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
+    fn unpack_file(&mut self, name: &[u8], executable: bool, input: &mut impl Read) -> Result<(), ArchiveError> {
         let path = self.path(name)?;
         if path.iter().any(is_litter) {
             return self.copy(input, &mut io::sink()).map(drop);
         }
-        self.within_folders(&path, name)?;
+        self.note_folders_above(&path, name)?;
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen.insert(path.clone()) {
             return Err(ArchiveError::Twice(shown(name)));
         }

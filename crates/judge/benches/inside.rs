@@ -151,7 +151,7 @@ fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) ->
         for (number, place) in frame.polynomials.coefficients.iter_mut().enumerate() {
             *place = coefficient(*place, number);
         }
-        writer.frame(&frame);
+        writer.write_frame(&frame);
     }
     writer.finish().expect("memory").0
 }

@@ -48,7 +48,7 @@ pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
 /// Returns the bytes of these frames.
 pub(crate) fn written(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
-    frames.iter().for_each(|frame| writer.frame(frame));
+    frames.iter().for_each(|frame| writer.write_frame(frame));
     writer.finish().expect("written").0
 }
 

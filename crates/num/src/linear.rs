@@ -38,7 +38,7 @@ pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
         rhs.swap(k, row);
     }
     forward_substitution(matrix, rhs);
-    back_substitution(matrix, rhs, rank);
+    substitute_back(matrix, rhs, rank);
     solution.clear();
     solution.resize(n, 0.0);
     for (&column, &value) in column_order.iter().zip(&rhs[..rank]) {
@@ -200,7 +200,7 @@ fn forward_substitution(matrix: &[f64], c: &mut [f64]) {
 }
 
 /// Solves with the upper triangle of size `rank`, panel by panel from the end.
-fn back_substitution(matrix: &[f64], c: &mut [f64], rank: usize) {
+fn substitute_back(matrix: &[f64], c: &mut [f64], rank: usize) {
     let n = c.len();
     let mut end = rank;
     while end > 0 {

@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
             // The original names the third word of the command line instead of the file.
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
             crate::complain(&not_opened("input", third_word));
-            transcript.not_opened();
+            transcript.print_not_opened();
             drop(transcript.finish());
             FAILED
         }
@@ -225,7 +225,7 @@ fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(
 /// Grades a trace and writes `residual.txt`.
 fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<'_, impl Write>) -> u8 {
     let outcome = replay::judge(scene, trace, &replay::Options::default(), &mut transcript);
-    transcript.graded(&outcome);
+    transcript.print_end(&outcome);
     drop(transcript.finish());
     if let Some(residuals) = residual_file(&outcome, scene.assignment().definition())
         && let Ok(mut file) = create_now(Path::new("residual.txt"))

@@ -82,25 +82,25 @@ impl<'a, W: Write> Transcript<'a, W> {
 
     /// Notes that all steps are done.
     pub(crate) fn completes(&mut self) {
-        self.dot(self.steps);
+        self.print_dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;
-        self.message(&format!("Simulation complete at time {}. Exiting.", general(time)));
+        self.print_message(&format!("Simulation complete at time {}. Exiting.", general(time)));
     }
 
     /// Prints the exit handler's line of a run without a verdict: the file is closed.
     pub(crate) fn closes(&mut self) {
         match self.heading.task {
             Task::Run => {}
-            Task::Record(file) => self.message_about("Saved simulation to file '", file, "'."),
+            Task::Record(file) => self.print_message_about("Saved simulation to file '", file, "'."),
             Task::Grade(file) => {
-                self.message_about("Colsing benchmarked simulation file '", file, "'.");
-                self.not_opened();
+                self.print_message_about("Colsing benchmarked simulation file '", file, "'.");
+                self.print_not_opened();
             }
         }
     }
 
     /// Ends grading: prints the completion message or the reason for stopping, then the exit handler's lines.
-    pub(crate) fn graded(&mut self, outcome: &Outcome) {
+    pub(crate) fn print_end(&mut self, outcome: &Outcome) {
         match &outcome.stop_of(Book::Parity) {
             None => self.completes(),
             Some(Stop::Trace { cause: Unreadable::State, .. }) => {
@@ -119,14 +119,14 @@ impl<'a, W: Write> Transcript<'a, W> {
             ) => self.write(b"\n"),
         }
         if let Task::Grade(file) = self.heading.task {
-            self.message_about("Colsing benchmarked simulation file '", file, "'.");
+            self.print_message_about("Colsing benchmarked simulation file '", file, "'.");
         }
         let collisions = self.heading.scene.assignment().definition().verdict;
         self.write(verdict::lines(outcome, collisions).as_bytes());
     }
 
     /// Prints the exit handler's lines when the trace could not even be opened; no banner comes before them.
-    pub(crate) fn not_opened(&mut self) {
+    pub(crate) fn print_not_opened(&mut self) {
         self.write(verdict::incomplete(&Residuals::default()).as_bytes());
     }
 
@@ -145,17 +145,17 @@ impl<'a, W: Write> Transcript<'a, W> {
     fn banner(&mut self) {
         self.write(format!("{GREEN}{}{PLAIN}\n\n", BANNER.join("\n")).as_bytes());
         let scene = self.heading.scene;
-        self.entry("FOSSSim Version", scene.assignment().definition().version.as_bytes());
-        self.entry("Build type", b"Release");
-        self.entry("Vectorization", b"Enabled");
-        self.entry("Scene", self.heading.scene_name);
-        self.entry("Integrator", integrator_name(scene.integrator).as_bytes());
-        self.entry("Collision Handling", scene.collision.handling().heading.as_bytes());
-        self.entry("Description", self.heading.description);
+        self.print_entry("FOSSSim Version", scene.assignment().definition().version.as_bytes());
+        self.print_entry("Build type", b"Release");
+        self.print_entry("Vectorization", b"Enabled");
+        self.print_entry("Scene", self.heading.scene_name);
+        self.print_entry("Integrator", integrator_name(scene.integrator).as_bytes());
+        self.print_entry("Collision Handling", scene.collision.handling().heading.as_bytes());
+        self.print_entry("Description", self.heading.description);
         match self.heading.task {
             Task::Run => {}
-            Task::Record(file) => self.message_about("Saving simulation to: ", file, ""),
-            Task::Grade(file) => self.message_about("Benchmarking simulation in: ", file, ""),
+            Task::Record(file) => self.print_message_about("Saving simulation to: ", file, ""),
+            Task::Grade(file) => self.print_message_about("Benchmarking simulation in: ", file, ""),
         }
         if scene.assignment().definition().tells_times {
             let now = Instant::now();
@@ -176,24 +176,24 @@ impl<'a, W: Write> Transcript<'a, W> {
     }
 
     /// Prints a dot when the next threshold is reached; never more than one. Without steps the quotient is NaN: no dot.
-    fn dot(&mut self, steps_done: u32) {
+    fn print_dot(&mut self, steps_done: u32) {
         if f64::from(steps_done) / f64::from(self.steps) >= self.threshold {
             self.threshold += DOT;
             self.write(b".");
         }
     }
 
-    fn entry(&mut self, name: &str, value: &[u8]) {
+    fn print_entry(&mut self, name: &str, value: &[u8]) {
         self.write(format!("{BLUE}{name}: {PLAIN}").as_bytes());
         self.write(value);
         self.write(b"\n");
     }
 
-    fn message(&mut self, text: &str) {
-        self.message_about(text, b"", "");
+    fn print_message(&mut self, text: &str) {
+        self.print_message_about(text, b"", "");
     }
 
-    fn message_about(&mut self, before: &str, file: &[u8], after: &str) {
+    fn print_message_about(&mut self, before: &str, file: &[u8], after: &str) {
         self.write(format!("{PINK}FOSSSim message: {PLAIN}{before}").as_bytes());
         self.write(file);
         self.write(after.as_bytes());
@@ -213,7 +213,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
     }
 
     fn step_begins(&mut self, step: u32) {
-        self.dot(step.saturating_sub(1));
+        self.print_dot(step.saturating_sub(1));
         if self.clock.is_some() {
             // The original says these before it reads the step's record. The parts of a step are not measured here.
             self.write(b"Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\n");
@@ -359,7 +359,7 @@ mod tests {
             transcript.step_begins(60);
             transcript.step_judged(60, &[missed, Remark::Polynomials(FindingKind::PolynomialDegree, 2)]);
             steps(transcript, 61..=200);
-            transcript.graded(&outcome(Overall::Failed, None));
+            transcript.print_end(&outcome(Overall::Failed, None));
         });
         let expected = "\x1b[35;1mProgress: \x1b[m--------------------------------------------------\n          \
             ..............Collision Detection Error: \n\
@@ -380,7 +380,7 @@ mod tests {
         let cause = Unreadable::State;
         let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, what: Malformation::Empty };
         let text = after_heading(&scene, Task::Grade(b"e"), |transcript| {
-            transcript.graded(&outcome(Overall::None, Some(stop)));
+            transcript.print_end(&outcome(Overall::None, Some(stop)));
         });
         assert!(text.starts_with("\x1b[31;1mError in TwoDSceneSerialized: \x1b[mFailed to load timestep. Exiting.\n"));
         assert!(text.contains("Colsing benchmarked simulation file 'e'.\nAccumulated Position Residual: 0.00282843\n"));

@@ -135,16 +135,16 @@ impl Painter {
         let time = f64::from(step) * self.time_step;
         let mut shapes = Vec::new();
         for &(point, normal, color) in &self.half_planes {
-            self.half_plane(point, normal, color, &mut shapes);
+            self.draw_half_plane(point, normal, color, &mut shapes);
         }
         let (view, frame) = (self.view, self.frame(4.0));
         for trail in &mut self.trails {
-            trail.goes_on(time, at(positions, trail.particle));
+            trail.extend(time, at(positions, trail.particle));
             trail.draw(&view, &frame, &mut shapes);
         }
-        self.bodies(positions, None, &mut shapes);
+        self.draw_bodies(positions, None, &mut shapes);
         if let Some(other) = overlay {
-            self.bodies(other, Some(Paint::Dashed(self.overlay_color())), &mut shapes);
+            self.draw_bodies(other, Some(Paint::Dashed(self.overlay_color())), &mut shapes);
         }
         if self.label {
             self.write(step, time, &mut shapes);
@@ -153,14 +153,14 @@ impl Painter {
     }
 
     /// Edges and particles: in their own colors, or all of them as an overlay's thin outlines.
-    fn bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
+    fn draw_bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
         for &(ends, radius, color) in &self.edges {
             let [first, second] = ends.map(|end| at(positions, end));
             let radius = if overlay.is_some() { 0.0 } else { radius };
             self.edge(first, second, radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
         }
         for (index, (&radius, &color)) in self.radii.iter().zip(&self.particles).enumerate() {
-            self.disc(at(positions, index), radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
+            self.draw_disc(at(positions, index), radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
         }
     }
 
@@ -173,7 +173,7 @@ impl Painter {
         }
     }
 
-    fn disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
+    fn draw_disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
         let place = self.view.place(center);
         let radius = self.view.length(radius).max(THINNEST);
         if !place.iter().all(|value| value.is_finite()) || !radius.is_finite() {
@@ -213,7 +213,7 @@ impl Painter {
         }
     }
 
-    fn half_plane(&self, point: Vec2, normal: Vec2, color: Rgb, shapes: &mut Vec<Shape>) {
+    fn draw_half_plane(&self, point: Vec2, normal: Vec2, color: Rgb, shapes: &mut Vec<Shape>) {
         let place = self.view.place(point);
         // In the picture y points down.
         let (x, y) = (normal.x, -normal.y);
@@ -249,7 +249,7 @@ impl Painter {
 
 impl Trail {
     /// Continues the path to the particle's new place.
-    fn goes_on(&mut self, time: f64, place: Vec2) {
+    fn extend(&mut self, time: f64, place: Vec2) {
         while self.points.front().is_some_and(|&(then, _)| !(time - then <= self.duration)) {
             self.points.pop_front();
         }

@@ -49,15 +49,15 @@ impl Raster {
         self.pixels.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
         for shape in shapes {
             match shape {
-                Shape::Disc { center, radius, paint } => self.disc(*center, *radius, *paint),
-                Shape::Line { points, width, paint } => self.line(points, *width, *paint),
-                Shape::Area { points, paint } => self.area(points, *paint),
-                Shape::Text { place, text, color } => self.text(*place, text, *color),
+                Shape::Disc { center, radius, paint } => self.draw_disc(*center, *radius, *paint),
+                Shape::Line { points, width, paint } => self.draw_line(points, *width, *paint),
+                Shape::Area { points, paint } => self.fill_area(points, *paint),
+                Shape::Text { place, text, color } => self.draw_text(*place, text, *color),
             }
         }
     }
 
-    fn disc(&mut self, [x, y]: Point, radius: f64, paint: Paint) {
+    fn draw_disc(&mut self, [x, y]: Point, radius: f64, paint: Paint) {
         let mut builder = PathBuilder::new();
         builder.push_circle(narrow(x), narrow(y), narrow(radius));
         let Some(path) = builder.finish() else { return };
@@ -68,7 +68,7 @@ impl Raster {
         }
     }
 
-    fn line(&mut self, points: &[Point], width: f64, paint: Paint) {
+    fn draw_line(&mut self, points: &[Point], width: f64, paint: Paint) {
         if let Some(path) = path(points, false) {
             self.stroke(&path, narrow(width), paint);
         }
@@ -86,13 +86,13 @@ impl Raster {
         self.pixels.stroke_path(path, &ink(paint), &stroke, Transform::identity(), None);
     }
 
-    fn area(&mut self, points: &[Point], paint: Paint) {
+    fn fill_area(&mut self, points: &[Point], paint: Paint) {
         if let Some(path) = path(points, true) {
             self.pixels.fill_path(&path, &ink(paint), FillRule::Winding, Transform::identity(), None);
         }
     }
 
-    fn text(&mut self, [left, base]: Point, text: &str, color: Rgb) {
+    fn draw_text(&mut self, [left, base]: Point, text: &str, color: Rgb) {
         let paint = ink(Paint::Solid(color));
         let top = base - f64::from(DOT * font::HEIGHT);
         for (place, letter) in text.chars().enumerate() {

@@ -18,7 +18,7 @@ pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> S
         background.hex()
     );
     for shape in shapes {
-        element(shape, &mut svg);
+        write_element(shape, &mut svg);
     }
     svg += "</svg>\n";
     svg
@@ -47,7 +47,7 @@ pub fn escaped(text: &str) -> String {
     safe
 }
 
-fn element(shape: &Shape, svg: &mut String) {
+fn write_element(shape: &Shape, svg: &mut String) {
     // Writing to a string never fails.
     let _ = match shape {
         Shape::Disc { center: [x, y], radius, paint } => {

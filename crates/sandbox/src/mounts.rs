@@ -19,7 +19,7 @@ use rustix::{
     },
 };
 
-use crate::sys::{Fork, SingleThread, check, done};
+use crate::sys::{Fork, SingleThread, check, check_answer};
 
 /// Files there can be read and not changed.
 pub(super) const READ_ONLY: u64 = 0x1;
@@ -42,7 +42,7 @@ struct MountAttributes {
 /// Leaves namespaces for new ones (`CLONE_NEW*`).
 pub(super) fn unshare(flags: i32) -> io::Result<()> {
     // SAFETY: an integer; nothing of ours depends on the namespaces that are left.
-    done(unsafe { libc::unshare(flags) })
+    check_answer(unsafe { libc::unshare(flags) })
 }
 
 /// Forks into new namespaces (`CLONE_NEW*`), in which the child is at once, and the first process if one is of

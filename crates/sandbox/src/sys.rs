@@ -38,7 +38,7 @@ pub(super) fn check(answer: i64) -> io::Result<i64> {
 }
 
 /// Returns the error of a call whose answer says no more than that.
-pub(super) fn done(answer: i32) -> io::Result<()> {
+pub(super) fn check_answer(answer: i32) -> io::Result<()> {
     check(i64::from(answer)).map(drop)
 }
 
@@ -208,7 +208,7 @@ pub(super) fn default_signals(ignored: &[i32]) {
 }
 
 /// Sets the mask of permission bits that new files do not get.
-pub(super) fn file_mask(mask: u32) {
+pub(super) fn set_file_mask(mask: u32) {
     rustix::process::umask(Mode::from_raw_mode(mask));
 }
 
@@ -218,7 +218,7 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
         return Err(io::Error::other("only single processes are ever signalled"));
     }
     // SAFETY: integers only; the process id is positive, so that no group is meant.
-    done(unsafe { libc::kill(pid, signal) })
+    check_answer(unsafe { libc::kill(pid, signal) })
 }
 
 /// Kills everybody in this process namespace if this process is the namespace's first, which is the answer; nothing
@@ -264,7 +264,7 @@ pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     // SAFETY: an all-zero `rusage` is a valid value; the kernel fills it.
     let usage = unsafe {
         let mut usage: libc::rusage = std::mem::zeroed();
-        done(libc::getrusage(libc::RUSAGE_CHILDREN, &raw mut usage))?;
+        check_answer(libc::getrusage(libc::RUSAGE_CHILDREN, &raw mut usage))?;
         usage
     };
     let time = |value: libc::timeval| {
@@ -466,7 +466,7 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> i
     };
     let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags };
     // SAFETY: the structure is the one that this request reads, and it outlives the call.
-    done(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
+    check_answer(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
 }
 
 /// The largest number of descriptors in one message.

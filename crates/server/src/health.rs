@@ -22,7 +22,7 @@ pub fn recent(policy: &QueuePolicy) -> i64 {
 ///
 /// # Errors
 /// An error of the database.
-pub async fn seen(
+pub async fn note_sign_of_life(
     transaction: &mut Transaction,
     (worker, version): (&str, &str),
     token: Option<i64>,
@@ -86,7 +86,7 @@ pub async fn may_claim(
 }
 
 /// Notes that the grader failed in this worker, which says that it can grade.
-pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
+pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
     transaction.execute(statement, values![fault, worker]).await?;
@@ -94,7 +94,7 @@ pub(crate) async fn failed(transaction: &mut Transaction, worker: &str, fault: &
 }
 
 /// Notes that the worker brought a result.
-pub(crate) async fn graded(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
+pub(crate) async fn note_result(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
     transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
     Ok(())
 }

@@ -55,7 +55,7 @@ impl Instruments {
     }
 
     /// Counts a request that was answered. Routes are templates, so that there are as many series as there are routes.
-    pub fn answered(&self, method: &str, route: &str, status: u16, took: Duration) {
+    pub fn count_answer(&self, method: &str, route: &str, status: u16, took: Duration) {
         self.requests.with_label_values(&[method, route, &status.to_string()]).inc();
         self.seconds.with_label_values(&[method, route]).observe(took.as_secs_f64());
     }
@@ -72,12 +72,12 @@ impl Instruments {
         page.0.register(Box::new(ProcessCollector::for_self()))?;
         page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1.0)])?;
         if let Some((free, size)) = storage.disk() {
-            page.number("disk_free_bytes", "Free room on the data folder's disk.", free as f64)?;
-            page.number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;
+            page.write_number("disk_free_bytes", "Free room on the data folder's disk.", free as f64)?;
+            page.write_number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;
         }
-        page.number("database_up", "Whether the database answers.", queue.is_some().into())?;
+        page.write_number("database_up", "Whether the database answers.", queue.is_some().into())?;
         if let Some(queue) = queue {
-            page.queue(queue)?;
+            page.write_queue(queue)?;
         }
         TextEncoder::new().encode_to_string(&page.0.gather())
     }
@@ -121,7 +121,13 @@ impl MetricsPage {
         self.0.register(Box::new(series))
     }
 
-    fn counter(&self, name: &str, help: &str, label: &str, values: &[(&str, f64)]) -> Result<(), prometheus::Error> {
+    fn write_counter(
+        &self,
+        name: &str,
+        help: &str,
+        label: &str,
+        values: &[(&str, f64)],
+    ) -> Result<(), prometheus::Error> {
         let labels: Vec<&str> = Some(label).filter(|label| !label.is_empty()).into_iter().collect();
         let series = CounterVec::new(Opts::new(format!("fosssim_{name}"), help), &labels)?;
         for (of, value) in values {
@@ -130,12 +136,12 @@ impl MetricsPage {
         self.0.register(Box::new(series))
     }
 
-    fn number(&self, name: &str, help: &str, value: f64) -> Result<(), prometheus::Error> {
+    fn write_number(&self, name: &str, help: &str, value: f64) -> Result<(), prometheus::Error> {
         self.gauge(name, help, "", &[("", value)])
     }
 
     /// Writes the database's numbers about the queue.
-    fn queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
+    fn write_queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
         let named = |counts: &'_ [(String, i64)], name: &str| {
             counts.iter().find(|(known, _)| known == name).map_or(0.0, |(_, count)| *count as f64)
         };
@@ -147,7 +153,7 @@ impl MetricsPage {
             self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
         }
         let help = "How long the oldest waiting upload has waited.";
-        self.number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
+        self.write_number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
         let idle = queue.workers - queue.working - queue.aside;
         let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.aside as f64)];
         let help = "Workers that were seen lately: they grade, wait for a job, or can't grade.";
@@ -157,14 +163,14 @@ impl MetricsPage {
             ("slots", "Their slots.", queue.slots),
             ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
         ] {
-            self.number(name, help, value as f64)?;
+            self.write_number(name, help, value as f64)?;
         }
         let kept = [("all", queue.kept[0] as f64), ("largest course", queue.kept[1] as f64)];
         self.gauge("kept_bytes", "Uploads and reports that are kept: of all, of the largest course.", "of", &kept)?;
-        self.counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
+        self.write_counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
         let kinds = ["graded", "failed try", "late answer", "buried"];
         let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));
         let kinds: Vec<(&str, f64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
-        self.counter("events_total", "Results, and what went wrong with jobs.", "kind", &kinds)
+        self.write_counter("events_total", "Results, and what went wrong with jobs.", "kind", &kinds)
     }
 }

@@ -18,7 +18,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     match completion {
         Completion::Done => {
             let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
-            health::graded(transaction, &about.worker).await?;
+            health::note_result(transaction, &about.worker).await?;
         }
         Completion::Late => note_late(transaction, lease, &format!("a result, {}", outcome.code)).await?,
         Completion::Repeated => {}
@@ -49,7 +49,7 @@ pub async fn fail(
         note(transaction, &row, "failed try", fault).await?;
     }
     // Last, as when a job is finished: anybody who holds a worker's row waits for no job.
-    health::failed(transaction, &row.worker, fault).await?;
+    health::note_failure(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
@@ -241,5 +241,5 @@ pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) 
     transaction
         .execute(statement, values![change.submission, old, change.result, change.by, change.campaign, change.reason])
         .await?;
-    score::changed(transaction, change.submission).await
+    score::note_change(transaction, change.submission).await
 }

@@ -14,12 +14,12 @@ impl Student {
 
     /// Creates a student who makes this mistake.
     pub fn new(mistake: Option<Mistake>) -> Self {
-        Self::default().and(mistake)
+        Self::default().with_mistake(mistake)
     }
 
     /// Returns the student with this mistake added. Of two mistakes in one formula or rule only the first is made.
     #[must_use]
-    pub fn and(mut self, mistake: Option<Mistake>) -> Self {
+    pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
             *free = mistake;
         }
@@ -73,7 +73,9 @@ mod tests {
 
     #[test]
     fn several_mistakes_are_made_each_in_its_place() {
-        let student = Student::new(Some(Mistake::ParticleParticleNoTwo)).and(Some(Mistake::ResponseSign)).and(None);
+        let student = Student::new(Some(Mistake::ParticleParticleNoTwo))
+            .with_mistake(Some(Mistake::ResponseSign))
+            .with_mistake(None);
         assert!(student.makes(Mistake::ParticleParticleNoTwo) && student.makes(Mistake::ResponseSign));
         assert!(!student.makes(Mistake::ParticleParticleEmpty));
         assert_eq!(student.mistake_in(&[Area::Response]), Some(Mistake::ResponseSign));

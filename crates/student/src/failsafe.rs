@@ -105,8 +105,8 @@ impl<'a> RigidBody<'a> {
     fn new(world: &'a World, zone: &Zone, q_start: &'a [f64], state: &State) -> Self {
         let (center, shift) = (Vec2::zeros(), Vec2::zeros());
         let mut rigid = Self { world, q_start, center, shift, momentum: 0.0, angle: 0.0, inertia: 0.0 };
-        rigid.translation(zone, state);
-        rigid.rotation(zone, state);
+        rigid.compute_translation(zone, state);
+        rigid.compute_rotation(zone, state);
         rigid
     }
 
@@ -128,7 +128,7 @@ impl<'a> RigidBody<'a> {
     }
 
     /// Computes the center of mass and its motion, from the particles' momenta.
-    fn translation(&mut self, zone: &Zone, state: &State) {
+    fn compute_translation(&mut self, zone: &Zone, state: &State) {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
         let is_unweighted = |alone| both || student.makes(alone);
@@ -163,7 +163,7 @@ impl<'a> RigidBody<'a> {
     }
 
     /// Computes the angle from the particles' angular momenta about the center of mass.
-    fn rotation(&mut self, zone: &Zone, state: &State) {
+    fn compute_rotation(&mut self, zone: &Zone, state: &State) {
         let mut momentum = 0.0;
         let mut inertia = 0.0;
         let student = self.world.student;

@@ -31,13 +31,13 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
         }
         Integrator::SymplecticEuler => explicit(world, world, SYMPLECTIC, false, state),
         Integrator::LinearizedImplicitEuler if world.student.makes(StepMistake::LinearIterates) => {
-            implicit(world, state, solves)?;
+            step_implicit(world, state, solves)?;
         }
         Integrator::LinearizedImplicitEuler => {
             *solves = 1;
-            linearized_implicit(world, state)?;
+            step_linearized_implicit(world, state)?;
         }
-        Integrator::ImplicitEuler => implicit(world, state, solves)?,
+        Integrator::ImplicitEuler => step_implicit(world, state, solves)?,
     }
     if let (Some(before), Some(whole)) = (before, whole) {
         treat_fixed(world, whole, &before, state);
@@ -113,7 +113,7 @@ fn clear_fixed(world: &World, whole: Term, vector: &mut [f64]) {
     }
 }
 
-fn linearized_implicit(world: &World, state: &mut State) -> Result<(), StepFailure> {
+fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
     let predicted = world.student.sum(&state.x, h, &state.v);
@@ -135,7 +135,7 @@ fn linearized_implicit(world: &World, state: &mut State) -> Result<(), StepFailu
     Ok(())
 }
 
-fn implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
+fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
     let most = if world.student.makes_none() { NEWTON_LIMIT } else { NEWTON_LIMIT_OF_MISTAKES };

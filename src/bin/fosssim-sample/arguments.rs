@@ -83,7 +83,7 @@ fn student(option: Option<String>) -> Result<Student, String> {
     if mistakes.len() > MOST {
         return Err(format!("{source} asks for {} mistakes, but at most {MOST} can be made at once", mistakes.len()));
     }
-    Ok(mistakes.into_iter().fold(Student::default(), |student, mistake| student.and(Some(mistake))))
+    Ok(mistakes.into_iter().fold(Student::default(), |student, mistake| student.with_mistake(Some(mistake))))
 }
 
 fn mistake(source: &str, id: &str) -> Result<Mistake, String> {

@@ -105,7 +105,7 @@ pub fn midway(student: Student) -> io::Result<MidwayAct> {
 }
 
 /// Writes the bytes behind the last record.
-pub fn after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
+pub fn write_after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
         Some(Mistake::HostileFloodTrace) => flood(output, FLOOD_BYTES),

@@ -61,7 +61,7 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
                 MidwayAct::GoOn => {}
                 MidwayAct::Leave(code) => return Ok(code),
                 MidwayAct::LeaveInsideRecord(code) => {
-                    trace.raw(&[0; 5])?;
+                    trace.write_raw(&[0; 5])?;
                     trace.flush()?;
                     std::process::exit(code.into());
                 }

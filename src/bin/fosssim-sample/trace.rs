@@ -48,7 +48,7 @@ impl<W: Write> Trace<W> {
 
     /// Hands the trace's end over.
     pub fn finish(mut self) -> io::Result<()> {
-        hostile::after_trace(self.student, &mut self.output)?;
+        hostile::write_after_trace(self.student, &mut self.output)?;
         self.output.flush()
     }
 
@@ -58,7 +58,7 @@ impl<W: Write> Trace<W> {
     }
 
     /// Writes raw bytes, which no correct program does.
-    pub fn raw(&mut self, bytes: &[u8]) -> io::Result<()> {
+    pub fn write_raw(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.output.write_all(bytes)
     }
 }

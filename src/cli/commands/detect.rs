@@ -170,7 +170,7 @@ fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<TracedStep> {
             }
             Ok(false) => bail!("the trace {} has no step {step}", trace.name),
             Err(error) => {
-                trace.not_failed()?;
+                trace.ensure_not_failed()?;
                 bail!("cannot read step {step} of the trace {}: {error}", trace.name);
             }
         }

@@ -84,6 +84,6 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> R
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
     // Bytes behind the last step are of interest only where they can't be read.
     let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
-    trace.not_failed()?;
+    trace.ensure_not_failed()?;
     Ok((case, card))
 }

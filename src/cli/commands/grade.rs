@@ -17,7 +17,7 @@ use crate::{
     cli::{
         arguments::grade::GradeArguments as Arguments,
         console, exit,
-        interrupt::{cancelled_by_signals, still_at_work},
+        interrupt::{cancelled_by_signals, show_activity},
         output,
         selection::Selection,
     },
@@ -264,7 +264,7 @@ impl GradingSession<'_> {
         let mut display = LiveDisplay::new(self.plan, submissions);
         let mut counter = self.arguments.progress.as_deref().map(|file| self.counter(file, submissions)).transpose()?;
         let mut on_event = |event: batch::Event<'_>| {
-            still_at_work();
+            show_activity();
             display.event(&event);
             if let Some(counter) = &mut counter {
                 counter.event(&event);

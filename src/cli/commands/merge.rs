@@ -15,7 +15,7 @@ use crate::{
     },
     suite::{
         Grade,
-        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Results as _, each_line, read_line},
+        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Results as _, for_each_line, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -165,7 +165,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
         Err(FileError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
-    each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
+    for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
         // An entry that somebody damaged is graded again, as in any folder.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;

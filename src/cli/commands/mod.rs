@@ -66,7 +66,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Serve(arguments) => serve::run(arguments),
         Command::Page(arguments) => page::run(arguments),
         Command::Completions(arguments) => shell::completions(arguments),
-        Command::Man(arguments) => shell::manual(arguments),
+        Command::Man(arguments) => shell::write_manual(arguments),
     };
     done.map(|()| exit::ACCEPTED)
 }

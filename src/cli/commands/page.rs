@@ -38,13 +38,13 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     if !module.starts_with(MAGIC) {
         bail!("the module is not WebAssembly; scripts/browser-page makes one");
     }
-    let course = arguments.suite.as_deref().map(|name| course(name, arguments.reader)).transpose()?;
+    let course = arguments.suite.as_deref().map(|name| course_part(name, arguments.reader)).transpose()?;
     let target = Output::create(&arguments.output, &inputs)?;
     target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
 }
 
 /// Returns the part of a suite that the page's readers may see.
-fn course(name: &str, reader: Audience) -> Result<CourseSuite> {
+fn course_part(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find(name)?;
     CourseSuite::for_plan(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
 }

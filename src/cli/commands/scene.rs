@@ -14,14 +14,14 @@ use anyhow::{Context, Result, bail};
 
 pub(super) fn run(command: &SceneCommand) -> Result<()> {
     match command {
-        SceneCommand::List(SceneListArguments { patterns, quiet }) => list(patterns, *quiet),
+        SceneCommand::List(SceneListArguments { patterns, quiet }) => print_list(patterns, *quiet),
         SceneCommand::Show(SceneShowArguments { name }) => show(name),
         SceneCommand::Export(arguments) => export(arguments),
     }
 }
 
 /// Lists the scenes that these patterns name; without patterns, all.
-fn list(patterns: &[String], quiet: bool) -> Result<()> {
+fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
     let names = matching(patterns)?;
     if quiet {
         let text: String = names.iter().map(|name| format!("asset:{name}\n")).collect();

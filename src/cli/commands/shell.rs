@@ -27,7 +27,7 @@ fn mended(script: &[u8]) -> Vec<u8> {
     String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
 }
 
-pub(super) fn manual(arguments: &ManArguments) -> Result<()> {
+pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
     // Gives the commands their full names.
     command.build();

@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
         if recorder.failed() {
             break;
         }
-        bar.at(step);
+        bar.show_step(step);
     }
     drop(bar);
     let (output, written) = recorder.finish().context("the trace could not be written")?;

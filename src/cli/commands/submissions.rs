@@ -78,7 +78,7 @@ impl<'a> Search<'a> {
             } else if self.is_one(path) {
                 found.push(self.folder(path));
             } else {
-                self.entries(path, &mut found, &mut passed_over)?;
+                self.gather_entries(path, &mut found, &mut passed_over)?;
             }
         }
         if found.is_empty() {
@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are passed
     /// over with a word about each: hidden ones, results of gradings, and links, which could lead to another's
     /// submission.
-    fn entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
+    fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
         let paths = listed(folder, MOST_ENTRIES)?;
         let holds_results = self.is_results(folder);
         let before = found.len();

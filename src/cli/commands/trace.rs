@@ -17,7 +17,7 @@ pub(super) fn info(arguments: &TraceInfoArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;
     let summary = Summary::for_scene(&scene.scene, &mut trace.reader);
-    trace.not_failed()?;
+    trace.ensure_not_failed()?;
     let json = || report::info_json(&scene.name, &trace.name, &summary);
     console::show(arguments.format, || summary.to_string(), json)?;
     Ok(if summary.trace.stopped.is_none() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
@@ -41,7 +41,7 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
             Ok(true) => {}
             Ok(false) => break,
             Err(error) => {
-                trace.not_failed()?;
+                trace.ensure_not_failed()?;
                 bail!("cannot show step {step} of the trace {}: {error}", trace.name);
             }
         }

@@ -39,7 +39,7 @@ impl TraceInput {
     ///
     /// # Errors
     /// As [`TraceInput::failure`] says.
-    pub(in crate::cli) fn not_failed(&self) -> Result<()> {
+    pub(in crate::cli) fn ensure_not_failed(&self) -> Result<()> {
         match self.failure() {
             Some(message) => bail!("cannot read the trace {}: {message}", self.name),
             None => Ok(()),

@@ -119,7 +119,7 @@ fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut
                     }
                     let (submission, scene) = (task / scenes.len(), task % scenes.len());
                     let mut send = |news| drop(sender.send((submission, scene, news)));
-                    gradings[submission].scene(scene, scenes[scene], &mut send);
+                    gradings[submission].grade_scene(scene, scenes[scene], &mut send);
                 }
             });
         }

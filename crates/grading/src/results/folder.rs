@@ -99,7 +99,7 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
 /// Reads the results of a journal, and where its last whole line ends.
 fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
     let mut sound = 0;
-    each_line(BufReader::new(file), |line| -> io::Result<()> {
+    for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
         // A line that somebody damaged costs its own result only.
         if let Some(entry) = read_line(line) {
@@ -114,7 +114,7 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
 ///
 /// # Errors
 /// When it can't be read, or has a line that is longer than any result; what `take` returns.
-pub fn each_line<E: From<io::Error>>(
+pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
 ) -> Result<(), E> {

@@ -5,7 +5,7 @@
 mod folder;
 
 pub use super::form::{Entry, line, read_line};
-pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, each_line};
+pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, for_each_line};
 
 use super::{key::Key, result::SceneResult};
 

@@ -38,7 +38,7 @@ impl SubmissionGrading<'_> {
                 *result = (patience::left_out(scene, why), false);
             }
         }
-        self.time(&mut results);
+        self.time_scenes(&mut results);
         let looks_like = self.looks_like(&results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {

@@ -208,7 +208,13 @@ impl<'a> Tolerances<'a> {
 
 /// Compares a logged state with the reference's. A velocity is not charged where the position is wrong: they have the
 /// same cause.
-pub(super) fn states(judged: &mut StepJudgement, frame: u64, own: &State, logged: &State, tolerances: &Tolerances<'_>) {
+pub(super) fn compare_states(
+    judged: &mut StepJudgement,
+    frame: u64,
+    own: &State,
+    logged: &State,
+    tolerances: &Tolerances<'_>,
+) {
     for particle in 0..own.positions.len() / 2 {
         let position_tolerance = tolerances.position(particle);
         let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));

@@ -41,7 +41,7 @@ pub(crate) fn judge(
 pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> StepJudgement {
     let mut judged = StepJudgement::default();
     let state = State::for_scene(context.scene);
-    contact::states(&mut judged, 0, &state, &frame.state, &Tolerances::from_context(context, &state, None));
+    contact::compare_states(&mut judged, 0, &state, &frame.state, &Tolerances::from_context(context, &state, None));
     if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
         let part = if frame.impulses.is_empty() { RecordPart::Polynomials } else { RecordPart::Impulses };
         judged.charge(Finding { step: 0, frame: 0, detail: FindingDetail::RecordsDiffer { part } });

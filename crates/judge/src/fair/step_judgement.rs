@@ -84,7 +84,7 @@ impl StepJudgement {
     }
 
     /// Notes a borderline decision.
-    pub(super) fn borderline(&mut self, pass: Pass, pair: Pair, collides: bool) {
+    pub(super) fn note_borderline(&mut self, pass: Pass, pair: Pair, collides: bool) {
         self.borderline.push(Borderline { step: self.step, pass, pair, collides });
     }
 

@@ -71,7 +71,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a frame") {
         frame.polynomials.push(&[1.0]);
-        writer.frame(&frame);
+        writer.write_frame(&frame);
     }
     let longer = writer.finish().expect("memory").0;
     for threads in [1, 2] {

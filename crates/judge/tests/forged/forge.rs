@@ -132,7 +132,7 @@ impl Stage {
                     None => frame.polynomials.push(own),
                 }
             }
-            writer.frame(&frame);
+            writer.write_frame(&frame);
         }
         writer.finish().expect("memory").0
     }
@@ -434,7 +434,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
         return None;
     }
     let mut writer = Writer::new(Vec::new(), Layout::for_scene(&stage.scene));
-    frames.iter().for_each(|frame| writer.frame(frame));
+    frames.iter().for_each(|frame| writer.write_frame(frame));
     let what = || format!("{}: {factors:?}", stage.name);
     let judged = match stage.judged(&writer.finish().expect("memory").0) {
         Err(fault) => return Some(format!("{}: {fault}", what())),

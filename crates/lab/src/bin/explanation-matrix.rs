@@ -75,7 +75,7 @@ fn main() -> anyhow::Result<ExitCode> {
     let wrong: Vec<_> = rows.into_iter().zip(&results).filter(|(row, _)| row.kind == RowKind::Wrong).collect();
     count(&wrong);
     println!("slowest: {row} on {scene}, {slowest:.2?}");
-    together(&wrong);
+    count_together(&wrong);
     println!("{}", if accused { "a correct variant is accused" } else { "no correct variant is accused" });
     Ok(ExitCode::from(u8::from(accused)))
 }
@@ -102,7 +102,7 @@ fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
 }
 
 /// Counts the explanation that all traces of a mistake give together.
-fn together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
+fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {
         let traces = outcomes.iter().map(|(.., explanations)| explanations.as_slice());

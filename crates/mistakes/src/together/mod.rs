@@ -20,7 +20,7 @@ pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     if is_all_told && grade.same_program.is_empty() && grade.smallest.is_empty() {
         return Cow::Borrowed(grade);
     }
-    let mut told = Grade { same_program: Vec::new(), smallest: smallest_told(grade), ..grade.clone() };
+    let mut told = Grade { same_program: Vec::new(), smallest: visible_smallest(grade), ..grade.clone() };
     if is_all_told {
         return Cow::Owned(told);
     }
@@ -68,7 +68,7 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
 
 /// Returns the smallest scenes that students may see: made from a scene of a group that they see at once, and with no
 /// more than its hints tell. There is none where the suite withholds what programs chose, since they are that.
-fn smallest_told(grade: &Grade) -> Vec<SmallestScene> {
+fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
     let told = |small: &SmallestScene| {
         let is_origin = |scene: &SceneGrade| scene.scene == small.origin;
         let group = grade.groups.iter().find(|group| group.scenes.iter().any(is_origin))?;

@@ -21,17 +21,17 @@ const MOST_PAIRS: usize = 4_000_000;
 
 /// Judges the scene as a whole.
 pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
-    steps(parts, report);
+    check_steps(parts, report);
     size(document, parts, report);
-    methods(parts, report);
+    check_methods(parts, report);
     normals(parts, report);
-    fixed_and_moving(parts, report);
-    edges_without_length(parts, report);
-    forces_without_direction(parts, report);
+    check_fixed_and_moving(parts, report);
+    check_lengths_of_edges(parts, report);
+    check_directions_of_forces(parts, report);
     if let Some(rule) = ContactRule::from_parts(parts) {
-        coincident_particles(parts, &rule, report);
-        particles_on_edges(parts, &rule, report);
-        particles_on_half_planes(parts, &rule, report);
+        check_coincident_particles(parts, &rule, report);
+        check_particles_on_edges(parts, &rule, report);
+        check_particles_on_half_planes(parts, &rule, report);
     }
 }
 
@@ -40,7 +40,7 @@ fn about(tag: &Tag<'_>, message: String, help: &str) -> Problem {
     Problem::from_element(tag.rule.name, &tag.span, message).help(help)
 }
 
-fn steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let (Some(duration), Some(integrator)) = (&parts.duration, &parts.integrator) else { return };
     let (Some(time), Some((_, time_step))) = (duration.value, integrator.value) else { return };
     if time < 0.0 || time_step <= 0.0 {
@@ -83,7 +83,7 @@ fn is_implicit(parts: &SceneParts<'_, '_>) -> bool {
 }
 
 /// Integrators and forces that do not go together.
-fn methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let Some(integrator) = &parts.integrator else { return };
     if is_implicit(parts) {
         for part in parts.forces.iter().filter(|part| part.tag.rule.name == "vortexforce") {
@@ -115,7 +115,7 @@ fn normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
 }
 
 /// Checks particles that are fixed and move: half-planes reflect these, too.
-fn fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let responds = matches!(
         parts.collision,
         Some(Collision::Simple { .. } | Collision::ContinuousTime { .. } | Collision::Hybrid { .. })
@@ -138,7 +138,7 @@ fn in_one_place(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool
     parts.place(first).zip(parts.place(second)).is_some_and(|(first, second)| first == second)
 }
 
-fn edges_without_length(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.edges.iter().enumerate() {
         let Some(Edge { first, second, .. }) = part.value else { continue };
         if in_one_place(parts, first, second) {
@@ -154,7 +154,7 @@ fn edges_without_length(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-fn forces_without_direction(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for part in &parts.forces {
         let Some(Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. }) = part.value else {
             continue;
@@ -207,7 +207,7 @@ impl ContactRule {
     }
 }
 
-fn coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let mut particles: Vec<(usize, &Tag<'_>, &Particle)> = parts
         .particles
         .iter()
@@ -234,7 +234,7 @@ fn coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: 
     }
 }
 
-fn particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let fixed = |particle: usize| {
         parts.particles.get(particle).and_then(|part| part.value.as_ref()).is_none_or(|particle| particle.fixed)
     };
@@ -258,7 +258,7 @@ fn particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &m
     }
 }
 
-fn particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
+fn check_particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let planes = parts.half_planes.iter().enumerate();
     let pairs = planes.flat_map(|plane| parts.particles.iter().enumerate().map(move |particle| (plane, particle)));
     for ((plane_number, plane), (number, particle)) in pairs.take(MOST_PAIRS) {

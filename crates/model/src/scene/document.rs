@@ -87,13 +87,13 @@ impl<'t> DocumentReader<'t, '_> {
                 Ok(Event::End(_)) if self.wrong_ends > MOST_PROBLEMS => break,
                 Ok(Event::End(_)) => self.end(span),
                 Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => self.stray = was_stray,
-                Ok(Event::Text(_) | Event::CData(_) | Event::GeneralRef(_)) => self.stray_text(span, was_stray),
+                Ok(Event::Text(_) | Event::CData(_) | Event::GeneralRef(_)) => self.report_stray_text(span, was_stray),
                 Ok(Event::DocType(_)) => self.document_type(span),
                 Ok(Event::Comment(_) | Event::PI(_) | Event::Decl(_)) => {}
                 Err(error) => {
                     self.document.broken = true;
                     let at = position(reader.error_position()).min(self.text.len());
-                    self.syntax(at, &error);
+                    self.report_syntax(at, &error);
                     if !matches!(error, Error::IllFormed(_)) {
                         break;
                     }
@@ -117,7 +117,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    fn syntax(&mut self, at: usize, error: &Error) {
+    fn report_syntax(&mut self, at: usize, error: &Error) {
         let (message, help) = match error {
             Error::Syntax(syntax) => syntax_words(*syntax),
             other => (other.to_string(), None),
@@ -137,7 +137,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    fn stray_text(&mut self, span: Range<usize>, reported: bool) {
+    fn report_stray_text(&mut self, span: Range<usize>, reported: bool) {
         self.stray = true;
         if reported {
             return;
@@ -162,11 +162,11 @@ impl<'t> DocumentReader<'t, '_> {
             return;
         }
         let name_span = span.start..span.start + 1 + name_length;
-        self.glued(inner, name, &name_span);
+        self.report_glued(inner, name, &name_span);
         match self.open.len() {
-            0 => self.root(name, inner, &name_span),
-            1 if self.in_scene => self.child(name, inner, &name_span),
-            2.. if self.in_scene => self.nested(name, &name_span),
+            0 => self.read_root(name, inner, &name_span),
+            1 if self.in_scene => self.read_child(name, inner, &name_span),
+            2.. if self.in_scene => self.report_nested(name, &name_span),
             _ => {}
         }
         // `/ >` is complained about as an attribute; it was meant to be the end of the element.
@@ -179,7 +179,7 @@ impl<'t> DocumentReader<'t, '_> {
 
     /// Warns where the original joins lines: a name with nothing but a line feed behind it becomes one with what
     /// follows.
-    fn glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
+    fn report_glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
         let behind = inner[name.len()..].trim_start_matches('\n');
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
         if glued && behind != "/" {
@@ -194,7 +194,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    fn root(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
+    fn read_root(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
         self.roots += 1;
         let similar = grammar::closest(name, ["scene"].into_iter()).is_some();
         self.in_scene = self.document.scene.is_none() && (name == "scene" || (similar && self.roots == 1));
@@ -224,7 +224,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    fn nested(&mut self, name: &str, span: &Range<usize>) {
+    fn report_nested(&mut self, name: &str, span: &Range<usize>) {
         let Some(parent) = self.open.get_mut(1) else { return };
         if std::mem::replace(&mut parent.complained, true) {
             return;
@@ -237,7 +237,7 @@ impl<'t> DocumentReader<'t, '_> {
         });
     }
 
-    fn child(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
+    fn read_child(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
         if let Some(rule) = grammar::rule(name) {
             if rule.name.starts_with("rigidbody") {
                 self.document.rigid_bodies = true;

@@ -51,18 +51,18 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Reports a warning about an attribute's value: `NAME of WHO MESSAGE`.
-    pub(super) fn warning(&mut self, name: &str, message: &str, help: impl Into<String>) {
+    pub(super) fn warn(&mut self, name: &str, message: &str, help: impl Into<String>) {
         self.complain(Severity::Warning, name, || (message.to_owned(), help.into()));
     }
 
     /// Reports an error about an attribute's value, which is shown as written.
-    pub(super) fn bad(&mut self, name: &str, help: impl Into<String>) {
+    pub(super) fn report_bad(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
         self.complain(Severity::Error, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
     /// Reports a warning about an attribute's value, which is shown as written.
-    pub(super) fn odd(&mut self, name: &str, help: impl Into<String>) {
+    pub(super) fn warn_of_odd(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
         self.complain(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
     }
@@ -88,7 +88,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         let attribute = self.required(name, what)?;
         let text = self.decoded(attribute)?.into_owned();
         if attribute.value.contains('\n') {
-            self.warning(name, "has a line break, which vanishes", "the original joins lines without a space");
+            self.warn(name, "has a line break, which vanishes", "the original joins lines without a space");
         }
         Some(text)
     }
@@ -110,7 +110,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             Some(meant) => format!("did you mean `{meant}`?"),
             None => format!("allowed are {}", list(&names)),
         };
-        self.bad(name, help);
+        self.report_bad(name, help);
         None
     }
 
@@ -175,7 +175,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             "false" | "no" => "write `0`",
             _ => "allowed are `0` and `1`",
         };
-        self.bad(name, help);
+        self.report_bad(name, help);
         None
     }
 
@@ -186,7 +186,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             if (0.0..=1.0).contains(&value) {
                 return Some(value);
             }
-            self.bad(name, "allowed is 0 to 1");
+            self.report_bad(name, "allowed is 0 to 1");
             None
         };
         let (red, green, blue) = (component("r"), component("g"), component("b"));
@@ -258,7 +258,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             Ok((value, vanished)) => {
                 if vanished {
                     let message = format!("is `{}`, which becomes zero", quote(&text));
-                    self.warning(attribute.name, &message, "the smallest 64-bit number is 5e-324");
+                    self.warn(attribute.name, &message, "the smallest 64-bit number is 5e-324");
                 }
                 Some(value)
             }

@@ -168,7 +168,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
             // Absent and empty mean a particle system.
             let rigid = !fields.is_blank("type") && fields.choice("type", &types)?;
             if rigid {
-                fields.bad("type", format!("{stub}; use `particle-system`"));
+                fields.report_bad("type", format!("{stub}; use `particle-system`"));
             }
             Some(rigid)
         });
@@ -228,7 +228,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         let particle_colors = colors("particlecolor", particles);
         let edge_colors = colors("edgecolor", edges);
         let half_plane_colors = colors("halfplanecolor", half_planes);
-        let paths = values(self.repeated("particlepath", |fields| path(fields, particles)));
+        let paths = values(self.repeated("particlepath", |fields| read_path(fields, particles)));
         Some(Display {
             max_frequency: max_frequency?,
             viewport: viewport?,
@@ -245,7 +245,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
 fn duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
     let duration = fields.scalar("time")?;
     if duration < 0.0 {
-        fields.bad("time", "the simulated time cannot be negative");
+        fields.report_bad("time", "the simulated time cannot be negative");
     }
     Some(duration)
 }
@@ -254,7 +254,7 @@ fn integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
     let (integrator, time_step) =
         (fields.choice("type", &Integrator::ALL.map(|one| (one.name(), one))), fields.scalar("dt"));
     if time_step.is_some_and(|time_step| time_step <= 0.0) {
-        fields.bad("dt", "the time step must be positive; the original makes no step");
+        fields.report_bad("dt", "the time step must be positive; the original makes no step");
     }
     Some((integrator?, time_step?))
 }
@@ -267,7 +267,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
-        fields.odd("COR", "a coefficient of restitution must be between 0 and 1");
+        fields.warn_of_odd("COR", "a coefficient of restitution must be between 0 and 1");
     }
     let kind = fields.choice("type", &types)?;
     let used: &[&str] = match kind {
@@ -277,7 +277,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     };
     for name in ["maxiters", "k", "thickness"] {
         if fields.has(name) && !used.contains(&name) {
-            fields.warning(name, "has no effect", "this type of collision handling does not use it");
+            fields.warn(name, "has no effect", "this type of collision handling does not use it");
         }
     }
     let (default_stiffness, default_thickness) =
@@ -286,8 +286,8 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
         let (stiffness, thickness) =
             (fields.scalar_or("k", default_stiffness), fields.scalar_or("thickness", default_thickness));
         let (stiffness, thickness) = (stiffness?, thickness?);
-        negative(fields, "k", stiffness, "the penalty force attracts");
-        negative(fields, "thickness", thickness, "the penalty force sets in late");
+        warn_of_negative(fields, "k", stiffness, "the penalty force attracts");
+        warn_of_negative(fields, "thickness", thickness, "the penalty force sets in late");
         Some((stiffness, thickness))
     };
     match kind {
@@ -311,13 +311,13 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
 fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     let written = fields.scalar_or("maxiters", 10.0)?;
     if written.trunc() != written || written < f64::from(i32::MIN) || written > f64::from(i32::MAX) {
-        fields.bad("maxiters", "write a whole number of at most 2147483647");
+        fields.report_bad("maxiters", "write a whole number of at most 2147483647");
         return None;
     }
     #[expect(clippy::cast_possible_truncation, reason = "whole and in range")]
     let iterations = written as i32;
     if iterations < 0 {
-        fields.odd("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
+        fields.warn_of_odd("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
     }
     Some(iterations)
 }
@@ -326,7 +326,7 @@ fn particle(fields: &mut TagFields<'_, '_, '_>) -> Option<Particle> {
     let (position, velocity) = (fields.vector("px", "py"), fields.vector("vx", "vy"));
     let mass = fields.scalar("m");
     if mass.is_some_and(|mass| mass <= 0.0) {
-        fields.bad("m", "a mass must be positive; the original divides by it");
+        fields.report_bad("m", "a mass must be positive; the original divides by it");
     }
     let fixed = fields.boolean("fixed");
     let radius = radius(fields, 0.1);
@@ -337,7 +337,7 @@ fn particle(fields: &mut TagFields<'_, '_, '_>) -> Option<Particle> {
 fn radius(fields: &mut TagFields<'_, '_, '_>, default: f64) -> Option<f64> {
     let radius = fields.scalar_or("radius", default)?;
     if radius < 0.0 {
-        fields.bad("radius", "a radius cannot be negative");
+        fields.report_bad("radius", "a radius cannot be negative");
     }
     Some(radius)
 }
@@ -396,23 +396,23 @@ impl Source for ForceFields<'_, '_, '_, '_> {
             None => self.fields.scalar(name),
         };
         if let (Some(number), Some(effect)) = (number, odd) {
-            negative(self.fields, name, number, effect);
+            warn_of_negative(self.fields, name, number, effect);
         }
         number.ok_or(())
     }
 }
 
-fn path(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
+fn read_path(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<ParticlePath> {
     let (particle, duration, color) = (fields.index("i", particles), fields.scalar("duration"), fields.color());
     if duration.is_some_and(|duration| duration < 0.0) {
-        fields.bad("duration", "a duration cannot be negative");
+        fields.report_bad("duration", "a duration cannot be negative");
     }
     Some(ParticlePath { particle: particle?, duration: duration?, color: color? })
 }
 
 /// Warns of a number below zero that the original accepts.
-fn negative(fields: &mut TagFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
+fn warn_of_negative(fields: &mut TagFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
     if value < 0.0 {
-        fields.odd(name, effect);
+        fields.warn_of_odd(name, effect);
     }
 }

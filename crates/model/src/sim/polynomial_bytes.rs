@@ -97,7 +97,7 @@ impl PolynomialBytes {
         }
         self.room(MOST_BYTES)[..MOST_BYTES].copy_from_slice(&polynomial);
         self.largest = largest;
-        self.added(4 + 8 * coefficients.len(), 1);
+        self.count_added(4 + 8 * coefficients.len(), 1);
     }
 
     /// Returns the room behind the list, of `bytes` or more.
@@ -111,7 +111,7 @@ impl PolynomialBytes {
 
     /// Makes the bytes that were written into the [room](Self::room) a part of the list.
     #[inline]
-    pub(super) fn added(&mut self, bytes: usize, polynomials: usize) {
+    pub(super) fn count_added(&mut self, bytes: usize, polynomials: usize) {
         self.used += bytes;
         self.count += polynomials;
     }

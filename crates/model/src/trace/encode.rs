@@ -9,7 +9,7 @@ pub(crate) const IMPULSE_BYTES: usize = 36;
 
 /// Appends `values` one after the other.
 // Not for inlining: it would be compiled where a recorder is used, at that crate's level.
-pub(crate) fn numbers(out: &mut Vec<u8>, values: &[f64]) {
+pub(crate) fn append_numbers(out: &mut Vec<u8>, values: &[f64]) {
     let start = out.len();
     out.resize(start + 8 * values.len(), 0);
     for (place, value) in out[start..].chunks_exact_mut(8).zip(values) {
@@ -18,9 +18,9 @@ pub(crate) fn numbers(out: &mut Vec<u8>, values: &[f64]) {
 }
 
 /// Appends positions and velocities.
-pub(crate) fn state(out: &mut Vec<u8>, state: &State) {
-    numbers(out, &state.positions);
-    numbers(out, &state.velocities);
+pub(crate) fn append_state(out: &mut Vec<u8>, state: &State) {
+    append_numbers(out, &state.positions);
+    append_numbers(out, &state.velocities);
 }
 
 /// Appends a list's count. Counts above the 32-bit range cannot be written; the format has no room for them.
@@ -49,7 +49,7 @@ pub(crate) fn impulse(out: &mut Vec<u8>, impulse: &LoggedImpulse) {
 /// Appends one polynomial, highest power first.
 pub(crate) fn polynomial(out: &mut Vec<u8>, coefficients: &[f64]) {
     count(out, coefficients.len());
-    numbers(out, coefficients);
+    append_numbers(out, coefficients);
 }
 
 #[cfg(test)]

@@ -195,12 +195,12 @@ impl<R: Read> Lenient<R> {
         frame.polynomials.clear();
         frame.logged = 0;
         frame.plain = true;
-        self.state(&mut frame.state)?;
+        self.read_state(&mut frame.state)?;
         if self.layout.impulses {
             self.impulses(&mut frame.impulses)?;
         }
         if self.layout.polynomials {
-            self.polynomials(frame)?;
+            self.read_polynomials(frame)?;
         }
         frame.note = self.notes.first().cloned();
         self.record += 1;
@@ -295,7 +295,7 @@ impl<R: Read> Lenient<R> {
         i32::from_le_bytes(bytes)
     }
 
-    fn state(&mut self, state: &mut State) -> Result<(), ReadStop> {
+    fn read_state(&mut self, state: &mut State) -> Result<(), ReadStop> {
         // The original took the record before for a whole one, although the bytes ended in it.
         let whole = self.record - u64::from(self.failed && self.record > 0);
         self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
@@ -333,7 +333,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    fn polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
+    fn read_polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         let (list, offset) = (List::Polynomials, self.source.offset());
         let count = self.integer();
         let begin = self.source.offset();

@@ -55,7 +55,7 @@ impl Log {
 
     /// Appends a record with these lists, but for its polynomials.
     pub(super) fn write_head(&self, out: &mut Vec<u8>, layout: Layout, state: &State) {
-        encode::state(out, state);
+        encode::append_state(out, state);
         if layout.impulses {
             encode::count(out, self.impulses());
             out.extend_from_slice(&self.impulses);

@@ -59,8 +59,8 @@ impl<W: Write> Writer<W> {
     }
 
     /// Writes one frame; lists that the layout has no room for are left out.
-    pub fn frame(&mut self, frame: &Frame) {
-        encode::state(&mut self.buffer, &frame.state);
+    pub fn write_frame(&mut self, frame: &Frame) {
+        encode::append_state(&mut self.buffer, &frame.state);
         if self.layout.impulses {
             encode::count(&mut self.buffer, frame.impulses.len());
             for impulse in &frame.impulses {
@@ -199,8 +199,8 @@ mod tests {
     #[test]
     fn counts_records_and_bytes() {
         let mut writer = Writer::new(Vec::new(), layout());
-        writer.frame(&frame());
-        writer.frame(&frame());
+        writer.write_frame(&frame());
+        writer.write_frame(&frame());
         assert_eq!(writer.written(), WrittenTrace { records: 2, bytes: 64 });
         let (bytes, written) = writer.finish().unwrap();
         assert_eq!(bytes.len(), 64);
@@ -234,7 +234,7 @@ mod tests {
     fn an_error_of_the_stream_is_kept_until_the_end() {
         let mut writer = Writer::new(Full(40), layout());
         for _ in 0..3 * PIECE / 32 {
-            writer.frame(&frame());
+            writer.write_frame(&frame());
         }
         assert!(writer.failed());
         assert_eq!(writer.finish().err().unwrap().to_string(), "no space left");

@@ -24,7 +24,7 @@ impl<const LENGTH: usize> Entries<LENGTH> {
     /// and moves up by one place. All places are computed, since those behind the last ones stay 0 and what has no
     /// branches is done for several at once.
     #[inline(always)]
-    fn less(&mut self, divisor: &Self, reciprocal: f64) {
+    fn subtract(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;
         let factor = values[0] * reciprocal;
         let change = (changes[0] + factor.abs() * divisor.changes[0]) * reciprocal.abs();
@@ -50,8 +50,8 @@ pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENG
         }
         // Two steps of the division leave a remainder that is shorter by two than the dividend.
         let reciprocal = 1.0 / divisor.values[0];
-        dividend.less(&divisor, reciprocal);
-        dividend.less(&divisor, reciprocal);
+        dividend.subtract(&divisor, reciprocal);
+        dividend.subtract(&divisor, reciprocal);
         (dividend, divisor) = (divisor, dividend);
     }
     divisor.is_clear()

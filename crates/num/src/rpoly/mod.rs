@@ -111,7 +111,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
     match degree {
         // Zeros at the origin that have just been found are discarded.
         0 => return Ok(Zeros::REJECTED),
-        1 | 2 => closed_form(&mut zeros, &coefficients[..=degree]),
+        1 | 2 => solve_closed_form(&mut zeros, &coefficients[..=degree]),
         _ => {
             let mut polynomial = Coefficients::default();
             polynomial[..=degree].copy_from_slice(&coefficients[..=degree]);
@@ -123,7 +123,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
 
 /// Finds the zeros of a line or a parabola: the ends of the recursion.
 #[inline]
-fn closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
+fn solve_closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
     match *coefficients {
         [slope, value] => zeros.report((-value / slope, 0.0)),
         [a, b, c] => quadratic::zeros(a, b, c).into_iter().for_each(|zero| zeros.report(zero)),
@@ -142,7 +142,7 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
             5 => find::<5>(&mut polynomial, &mut direction, &mut zeros.steps)?,
             6 => find::<6>(&mut polynomial, &mut direction, &mut zeros.steps)?,
             _ => {
-                closed_form(zeros, &polynomial[..=degree]);
+                solve_closed_form(zeros, &polynomial[..=degree]);
                 return Ok(());
             }
         };

@@ -41,7 +41,7 @@ impl<'a> Gif<'a> {
     ///
     /// # Errors
     /// When it can't be written.
-    pub fn picture(&mut self, raster: &Raster) -> io::Result<()> {
+    pub fn write_picture(&mut self, raster: &Raster) -> io::Result<()> {
         let (palette, known) = (&self.palette, &mut self.known);
         let after: Vec<u8> = raster
             .rgba()

@@ -3,7 +3,7 @@ mod changed;
 mod gif;
 mod png;
 
-pub use self::{gif::Gif, png::png};
+pub use self::{gif::Gif, png::write_png};
 
 /// How fast pictures follow each other, in pictures per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

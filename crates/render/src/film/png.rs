@@ -6,7 +6,7 @@ use std::io::{self, Write};
 ///
 /// # Errors
 /// When `out` can't be written.
-pub fn png(raster: &Raster, out: impl Write) -> io::Result<()> {
+pub fn write_png(raster: &Raster, out: impl Write) -> io::Result<()> {
     let size = raster.size();
     let mut encoder = ::png::Encoder::new(out, size.width(), size.height());
     encoder.set_color(::png::ColorType::Rgb);

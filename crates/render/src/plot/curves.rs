@@ -70,13 +70,13 @@ impl PolynomialPlot<'_> {
             sheet.line(ink, 2.0, &[[8.0, top + 8.0], [30.0, top + 8.0]]);
             sheet.marker(ink, [19.0, top + 8.0]);
             sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Plain, &curve.name);
-            sets(curve.positive, ink, top, 0.75, &mut sheet);
+            draw_sets(curve.positive, ink, top, 0.75, &mut sheet);
         }
         if let Some(common) = self.common {
             let top = row_top(rows - 1);
             sheet.rule(Ink::Axis, [LEFT, top - 2.0], [RIGHT, top - 2.0]);
             sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Bad, "all positive");
-            sets(common, Ink::Bad, top, 1.0, &mut sheet);
+            draw_sets(common, Ink::Bad, top, 1.0, &mut sheet);
         }
         if let Some(time) = self.impact.filter(|time| (0.0..=1.0).contains(time)) {
             sheet.line(Ink::Bad, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
@@ -152,7 +152,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
 }
 
 /// Draws a row of bars: sets of time as far as they lie in `[0, 1]`; a single time is a diamond.
-fn sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
+fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
         if lo < hi {

@@ -34,7 +34,7 @@ impl PassPlot<'_> {
             sheet.rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
             sheet.text([LEFT - 8.0, y(count) + 4.0], Anchor::End, Tone::Faint, &count.to_string());
         }
-        sheet.steps(&columns, BOTTOM + 16.0, HEIGHT - 6.0);
+        sheet.draw_steps(&columns, BOTTOM + 16.0, HEIGHT - 6.0);
         let (mut expected, mut actual, mut differing) = (Vec::new(), Vec::new(), Vec::new());
         for column in 0..columns.columns {
             let range = columns.range(column);

@@ -43,7 +43,7 @@ impl ResidualPlot<'_> {
         let scale = Scale::from_plot(self);
         scale.draw(&mut sheet);
         let columns = Columns::for_steps(steps);
-        sheet.steps(&columns, BOTTOM + LANE + 16.0, HEIGHT - 6.0);
+        sheet.draw_steps(&columns, BOTTOM + LANE + 16.0, HEIGHT - 6.0);
         if let Some((step, why)) = self.mark
             && (1..=steps).contains(&(step as usize))
         {

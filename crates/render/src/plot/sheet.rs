@@ -150,17 +150,17 @@ impl Sheet {
             return;
         }
         let list = points.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join("L");
-        self.path(ink, width, &list);
+        self.draw_path(ink, width, &list);
     }
 
     /// Draws a line of cubic curves: where it starts, and for each piece two control points and its end.
     pub fn curve(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
         let Some((&[x, y], rest)) = points.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
         let list = rest.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join(" ");
-        self.path(ink, width, &format!("{} {}C{list}", pixel(x), pixel(y)));
+        self.draw_path(ink, width, &format!("{} {}C{list}", pixel(x), pixel(y)));
     }
 
-    fn path(&mut self, ink: Ink, width: f64, list: &str) {
+    fn draw_path(&mut self, ink: Ink, width: f64, list: &str) {
         let _ = writeln!(
             self.svg,
             "<path{}{}{}{} d=\"M{list}\"/>",
@@ -228,7 +228,7 @@ impl Sheet {
     }
 
     /// Draws the axis of the steps: numbers on one line, its name on another.
-    pub fn steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
+    pub fn draw_steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
         for tick in ticks(columns.steps) {
             self.text([columns.x(tick - 1), numbers], Anchor::Middle, Tone::Faint, &tick.to_string());
         }

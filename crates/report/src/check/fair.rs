@@ -51,7 +51,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         }
     }
     if !fair.findings.examples.is_empty() {
-        text += &kinds(&fair.findings, style);
+        text += &describe_kinds(&fair.findings, style);
     }
     if let Some(cause) = cause(outcome) {
         let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), sides(cause));
@@ -61,7 +61,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
 }
 
 /// Returns the kinds of findings of a book, with their first examples.
-pub(super) fn kinds(found: &BookFindings, style: Style) -> String {
+pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
     for example in &found.examples {

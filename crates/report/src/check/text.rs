@@ -254,7 +254,7 @@ fn used(value: f64, bound: f64) -> String {
 
 fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     let heading = format!("Findings: {} in {}", count(account.counts.total()), counted(account.wrong_steps, "step"));
-    let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::kinds(account, style));
+    let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::describe_kinds(account, style));
     if follow > 0 {
         text += &format!("  among them {}\n", follows::describe(follow));
     }

@@ -56,7 +56,7 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) ->
         study.curves.iter().zip(logged).zip(&differs).filter(|(_, differs)| **differs).map(|(both, _)| both);
     match (wrong.next(), wrong.next()) {
         (Some((curve, own)), None) => {
-            out += &both(step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own);
+            out += &draw_both(step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own);
         }
         _ => out += &yours(step, call, study, logged),
     }
@@ -140,7 +140,7 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
 }
 
 /// Draws the expected and the actual curve of one polynomial.
-fn both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
+fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
     let own = positive(logged);
     if is_flat(set) && is_flat(&own) {
         return String::new();

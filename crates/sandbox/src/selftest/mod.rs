@@ -229,7 +229,7 @@ impl Place<'_> {
         if let Some(difference) = before.difference(&after) {
             return Err(broken(format!("it changed the host: {difference}")));
         }
-        left_as_expected(attack, &folder).map_err(broken)?;
+        check_left_trace(attack, &folder).map_err(broken)?;
         decoy.clear().map_err(|error| broken(format!("its folder cannot be removed: {error}")))?;
         Ok(PromiseState::Held)
     }
@@ -325,7 +325,7 @@ fn last_output(outcome: &RunOutcome) -> String {
 }
 
 /// Checks that the folder holds the trace that it should hold.
-fn left_as_expected(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
+fn check_left_trace(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
     let collected = work.regular_file(TRACE, LONGEST_TRACE).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);

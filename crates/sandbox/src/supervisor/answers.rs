@@ -15,7 +15,7 @@ use crate::{
 
 /// Returns the memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers
 /// itself.
-fn memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
+fn open_memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
 }
@@ -23,7 +23,7 @@ fn memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
 /// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
 /// library sorts long arrays by it.
 pub(super) fn about_machine(announced: &PendingCall, user: Option<u32>) -> CallAnswer {
-    match memory(announced, user) {
+    match open_memory(announced, user) {
         Err(_) => CallAnswer::GoOn,
         Ok(memory) if memory.write_all_at(&machine::without_others(), announced.arguments[0]).is_ok() => {
             CallAnswer::Done
@@ -59,7 +59,7 @@ impl SharedWaits {
 
     /// Has the thread wait; an answer that needs no wait comes back.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
-        let Ok(memory) = memory(announced, user) else { return Some(CallAnswer::GoOn) };
+        let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::GoOn) };
         let [word, _, value, ..] = announced.arguments;
         let limit = match limit(announced, &memory, now) {
             Ok(limit) => limit,

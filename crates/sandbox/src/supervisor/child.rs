@@ -78,7 +78,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     }
     sys::connect(&plan.input, &plan.output, &plan.error).map_err(stage("connect the standard streams"))?;
     sys::default_signals(&plan.ignored);
-    sys::file_mask(0o022);
+    sys::set_file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
     if plan.order.walls.namespaces && !plan.order.tools {
         // The current folder comes along.
@@ -86,7 +86,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     }
     // To be the first that the kernel ends when memory runs out. Some containers forbid it.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
-    limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
+    set_limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
     if let Some(user) = plan.user {
         sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
     }
@@ -123,7 +123,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
 }
 
 /// Sets the resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
-fn limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
+fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The default of Linux, so that a deep recursion ends alike on every grading host.
     const STACK: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;

@@ -53,7 +53,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
             holdings.memory += machine::bytes_of(&status, "VmPTE:").unwrap_or(0);
         }
     }
-    let shown = as_shown(root);
+    let shown = path_in_maps(root);
     // How much of a mapped file is on disk, only root may ask: so the mapped size counts in full.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
@@ -67,7 +67,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
 }
 
 /// Returns the path as `maps` shows it: its lines could not be told apart if names held newlines.
-fn as_shown(path: &Path) -> Vec<u8> {
+fn path_in_maps(path: &Path) -> Vec<u8> {
     let lines: Vec<&[u8]> = path.as_os_str().as_bytes().split(|byte| *byte == b'\n').collect();
     lines.join(&b"\\012"[..])
 }
@@ -127,8 +127,8 @@ mod tests {
 
     #[test]
     fn a_newline_in_the_path_hides_no_mapped_file() {
-        assert_eq!(as_shown(Path::new("/a\nb/\n")), b"/a\\012b/\\012");
-        assert_eq!(as_shown(Path::new("/a/b")), b"/a/b");
+        assert_eq!(path_in_maps(Path::new("/a\nb/\n")), b"/a\\012b/\\012");
+        assert_eq!(path_in_maps(Path::new("/a/b")), b"/a/b");
     }
 
     #[test]

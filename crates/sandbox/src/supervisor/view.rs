@@ -102,7 +102,7 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
 
 /// Returns a new root with all that lies outside the working folder, and that folder where it does not lie in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
-    sys::file_mask(0o022);
+    sys::set_file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
     let (site, room) = (text(Path::new(SITE))?, text(Path::new(ROOM))?);
     mounts::mount(c"tmpfs", &site, &room, false).map_err(stage("make a root folder"))?;
@@ -118,7 +118,7 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
         .chain(walls::DEVICES.map(|path| (path.into(), Access::Device)))
         .chain((!order.volatile).then(|| (wire::path(&order.folder), Access::Write)))
     {
-        view.place(&path, access)
+        view.mount_place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
     let folders = walls::LIBRARIES.map(PathBuf::from);
@@ -233,7 +233,7 @@ struct FileView {
 impl FileView {
     /// Brings the file or folder at the path into sight under the same path. A path that the host lacks is left out,
     /// and so are its processes: `/proc` is made anew.
-    fn place(&mut self, path: &Path, access: Access) -> io::Result<()> {
+    fn mount_place(&mut self, path: &Path, access: Access) -> io::Result<()> {
         let Some(real) = self.resolve(path)? else { return Ok(()) };
         if real == Path::new("/") {
             return Err(io::ErrorKind::InvalidInput.into());

@@ -20,12 +20,12 @@ const PATIENCE: Duration = Duration::from_secs(10);
 const SILENCE: Duration = Duration::from_secs(60);
 
 /// Says that the process has begun its work.
-pub(super) fn ready() {
+pub(super) fn say_ready() {
     tell(&[NotifyState::Ready]);
 }
 
 /// Says that it ends.
-pub(super) fn stopping() {
+pub(super) fn say_stopping() {
     tell(&[NotifyState::Stopping]);
 }
 

@@ -64,7 +64,7 @@ fn until_signalled() -> Result<CancellationToken> {
             if again {
                 std::process::exit(130);
             }
-            heartbeat::stopping();
+            heartbeat::say_stopping();
             tracing::info!("stopping; jobs are given back (once more to stop immediately)");
             cancelled.cancel();
         }

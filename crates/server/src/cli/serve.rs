@@ -96,7 +96,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     });
     let example = arguments.example.then_some(folders.flawed_program.as_path());
     greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
-    heartbeat::ready();
+    heartbeat::say_ready();
     let seen = database.clone();
     tokio::spawn(heartbeat::beat(folders.data.clone(), async move || seen.is_well().await));
     let serving = net::serve(listener, web::router(app), stop.clone());

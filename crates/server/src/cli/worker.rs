@@ -44,7 +44,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         policy: policy(&arguments.work),
         grader: grader(arguments.work.grader.as_deref())?,
     };
-    heartbeat::ready();
+    heartbeat::say_ready();
     let seen = database.clone();
     tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_well().await));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
@@ -67,7 +67,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     folders.clear()?;
     let source = RemoteSource::new(server, token, &name);
     let folder = folders.work(&name);
-    heartbeat::ready();
+    heartbeat::say_ready();
     // A worker whose server is away is well: it goes on trying, and has what it holds.
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     let slots = slots(arguments.slots);

@@ -47,13 +47,13 @@ macro_rules! orders {
 }
 
 /// Notes that what counts for a submission has changed: the platforms that its owner came from are to be told.
-pub(crate) async fn changed(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
+pub(crate) async fn note_change(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
     let rows = transaction.rows(orders!("submission.id = ?"), values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
 /// Notes that the results of a regrade begin to count.
-pub(crate) async fn changed_by(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
+pub(crate) async fn note_regrade(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
     let rows = transaction.rows(statement, values![campaign]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
@@ -201,7 +201,7 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
 }
 
 /// Notes that a platform was told, unless there is something newer by now.
-pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
+pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
     transaction.execute(statement, values![parcel.order.link, parcel.order.account, parcel.stamp]).await?;
@@ -214,7 +214,7 @@ pub(super) async fn sent(transaction: &mut Transaction, parcel: &Parcel) -> Resu
 }
 
 /// Notes why a platform does not take a score, for staff.
-pub(super) async fn refused(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
+pub(super) async fn note_rejection(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL";
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
@@ -222,7 +222,7 @@ pub(super) async fn refused(transaction: &mut Transaction, order: Order, fault: 
 /// Notes that a job was tried too often; returns whether it was one of these.
 pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
     let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
-    refused(transaction, order, fault).await?;
+    note_rejection(transaction, order, fault).await?;
     note(transaction, order, "score not sent", fault).await?;
     Ok(true)
 }
@@ -238,7 +238,7 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
 
 /// How far the column of a link is.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) enum Column {
+pub(super) enum ColumnState {
     /// The column is known.
     Known(String),
     /// The caller is to have it made, and nobody else for so long.
@@ -248,20 +248,20 @@ pub(super) enum Column {
 }
 
 /// Returns how far the column of a link is; the caller that hears [`Column::Yours`] calls [`column_made`] soon.
-pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<Column, DbError> {
+pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL
            AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)";
     let mine = transaction.execute(statement, values![at_most, link, at_most]).await?;
     if mine > 0 {
-        return Ok(Column::Yours);
+        return Ok(ColumnState::Yours);
     }
     let row = transaction.one("SELECT line_item FROM platform_link WHERE id = ?", values![link]).await?;
-    Ok(row.maybe_text("line_item")?.map_or(Column::Theirs, Column::Known))
+    Ok(row.maybe_text("line_item")?.map_or(ColumnState::Theirs, ColumnState::Known))
 }
 
 /// Keeps the column that was found or made for a link; with nothing somebody else may try.
-pub(super) async fn column_made(
+pub(super) async fn keep_column(
     transaction: &mut Transaction,
     link: i64,
     address: Option<&str>,

@@ -2,7 +2,7 @@
 use super::{
     Lti, ServiceFault,
     client::{Ask, scope},
-    score::{self, Column, Order, Parcel},
+    score::{self, ColumnState, Order, Parcel},
 };
 use crate::{
     calendar,
@@ -119,7 +119,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
                 && let Some(parcel) = parcel
             {
-                score::sent(&mut transaction, &parcel).await?;
+                score::note_sent(&mut transaction, &parcel).await?;
             }
         }
         Err(fault) => {
@@ -135,7 +135,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
                 (Failure::Buried, _) => {
                     score::give_up(&mut transaction, &claim.payload, &text).await?;
                 }
-                (Failure::Retried, Ok(order)) => score::refused(&mut transaction, order, &text).await?,
+                (Failure::Retried, Ok(order)) => score::note_rejection(&mut transaction, order, &text).await?,
                 _ => {}
             }
         }
@@ -197,12 +197,12 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
         let column = score::column(&mut transaction, link, MAKING).await?;
         transaction.commit().await?;
         match column {
-            Column::Known(address) => return Ok(address),
-            Column::Theirs => tokio::time::sleep(LOOK_AGAIN).await,
-            Column::Yours => {
+            ColumnState::Known(address) => return Ok(address),
+            ColumnState::Theirs => tokio::time::sleep(LOOK_AGAIN).await,
+            ColumnState::Yours => {
                 let made = find_or_make(database, lti, parcel, container).await;
                 let mut transaction = database.begin().await?;
-                score::column_made(&mut transaction, link, made.as_deref().ok()).await?;
+                score::keep_column(&mut transaction, link, made.as_deref().ok()).await?;
                 transaction.commit().await?;
                 return made;
             }

@@ -56,7 +56,7 @@ fn usable(set: KeySet) -> Vec<PublicKey> {
 }
 
 impl Trust {
-    fn known(&self, platform: &Platform) -> Option<KnownKeys> {
+    fn find_keys(&self, platform: &Platform) -> Option<KnownKeys> {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
@@ -64,7 +64,7 @@ impl Trust {
     /// Returns a platform's key of this name.
     pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
         let named = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
-        let known = self.known(platform);
+        let known = self.find_keys(platform);
         if let Some(known) = &known {
             if known.read_at.is_some_and(|at| at.elapsed() < FRESH)
                 && let Some(key) = named(known)

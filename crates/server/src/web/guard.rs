@@ -105,7 +105,7 @@ pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next
     let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
     // Anybody may make up methods, and each would be a series of its own.
     let counted = if known.contains(&method) { method.as_str() } else { "other" };
-    app.instruments().answered(counted, &route, status, took);
+    app.instruments().count_answer(counted, &route, status, took);
     let took = took.as_millis();
     if response.status().is_server_error() {
         tracing::warn!(%method, route, status, took, "answered");

@@ -79,7 +79,7 @@ async fn in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<
     };
     let answer = answer.unwrap_or_else(|| Err("checking it takes too long, or too much memory".to_owned()));
     if answer.is_ok() {
-        member.archive_was_right();
+        member.note_right_archive();
     }
     Ok(answer)
 }

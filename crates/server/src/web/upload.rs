@@ -260,7 +260,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
                 }
                 (None, true) => Ok(Form::Traces),
                 (Some(Form::Traces), true) => Ok(Form::Traces),
-                (said, _) => holds_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
+                (said, _) => check_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
             }
         }
         Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("looked for {wanted}, and found {found}")),
@@ -269,7 +269,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
 }
 
 /// Checks that an archive with these files holds the program.
-fn holds_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
+fn check_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
     /// The greatest number of files that are named.
     const NAMED: usize = 6;
     let Some(program) = program else { return Ok(()) };

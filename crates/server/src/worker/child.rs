@@ -57,7 +57,7 @@ impl Child {
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
-                guard::stand_between()
+                guard::run_guard()
             });
         }
         let (started_sender, started) = std::sync::mpsc::channel();

@@ -15,7 +15,7 @@ static GRADER: AtomicI32 = AtomicI32::new(0);
 ///
 /// # Errors
 /// When there can't be another process.
-pub(super) unsafe fn stand_between() -> io::Result<()> {
+pub(super) unsafe fn run_guard() -> io::Result<()> {
     // SAFETY: these calls may be made between fork and exec, and take no memory of ours but the text.
     unsafe {
         // When memory runs short the grader goes first, and not the worker.

@@ -61,7 +61,7 @@ impl<G: Grader> Health<G> {
     }
 
     /// Waits until that has changed.
-    pub(super) async fn changed(&self) {
+    pub(super) async fn wait_for_change(&self) {
         self.change.notified().await;
     }
 

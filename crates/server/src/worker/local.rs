@@ -177,7 +177,7 @@ impl JobSource for LocalSource {
 
     async fn tick(&self, slots: usize, fault: Option<&str>) -> Result<(), SourceError> {
         let mut transaction = self.database.begin().await?;
-        health::seen(&mut transaction, (&self.worker, &self.version), self.token, slots, fault).await?;
+        health::note_sign_of_life(&mut transaction, (&self.worker, &self.version), self.token, slots, fault).await?;
         transaction.commit().await?;
         Ok(ledger::tick(&self.database, &self.policy).await?)
     }

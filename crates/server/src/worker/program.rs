@@ -84,7 +84,7 @@ impl Program {
         for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
-        at_home(&mut command, folder);
+        isolate(&mut command, folder);
         // Another grader may not know these.
         command.env("FOSSSIM_PLATFORM_HIDES", "true");
         command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
@@ -109,7 +109,7 @@ impl Program {
         let messages = folder.join("messages.txt");
         let mut command = Command::new(&self.path);
         command.args(arguments);
-        at_home(&mut command, folder);
+        isolate(&mut command, folder);
         command.stderr(fs::File::create(&messages).map_err(|error| format!("cannot write messages: {error}"))?);
         let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
         let end = tokio::select! {
@@ -131,7 +131,7 @@ impl Program {
     }
 
     /// Grades an example, and checks how that ends.
-    async fn example(
+    async fn try_example(
         &self,
         folder: &Path,
         submission: &[&str],
@@ -155,7 +155,7 @@ impl Program {
 }
 
 /// Lets a command run in a folder, with nothing of the server's surroundings, which may hold secrets.
-pub(super) fn at_home(command: &mut Command, folder: &Path) {
+pub(super) fn isolate(command: &mut Command, folder: &Path) {
     command.env_clear().current_dir(folder);
     for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
         if let Some(value) = std::env::var_os(name) {
@@ -180,11 +180,11 @@ impl Grader for Program {
         if self.step(folder, &recorded, &stop).await? != 0 {
             return Ok(());
         }
-        self.example(folder, &[&folder.join("right").display().to_string(), "--traces"], 0, &stop).await?;
+        self.try_example(folder, &[&folder.join("right").display().to_string(), "--traces"], 0, &stop).await?;
         let program = idle.join("FOSSSim");
         fs::write(&program, "#!/bin/sh\nexit 0\n").map_err(|error| error.to_string())?;
         fs::set_permissions(&program, fs::Permissions::from_mode(0o755)).map_err(|error| error.to_string())?;
-        self.example(folder, &[&program.display().to_string()], 1, &stop).await
+        self.try_example(folder, &[&program.display().to_string()], 1, &stop).await
     }
 
     async fn grade(

@@ -50,7 +50,7 @@ pub async fn work<D: JobSource, G: Grader>(
     let health = Health::new(grader, folder);
     let mut running = tokio::task::JoinSet::new();
     for _ in 0..slots {
-        running.spawn(slot(source.clone(), health.clone(), stop.clone()));
+        running.spawn(run_slot(source.clone(), health.clone(), stop.clone()));
     }
     let ticking = async {
         loop {
@@ -62,7 +62,7 @@ pub async fn work<D: JobSource, G: Grader>(
             }
             tokio::select! {
                 () = tokio::time::sleep(source.tick_every()) => {}
-                () = health.changed() => {}
+                () = health.wait_for_change() => {}
             }
         }
     };
@@ -72,7 +72,7 @@ pub async fn work<D: JobSource, G: Grader>(
     }
 }
 
-async fn slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: CancellationToken) {
+async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: CancellationToken) {
     let mut wait = FIRST_WAIT;
     while health.well(&stop).await {
         match source.claim().await {

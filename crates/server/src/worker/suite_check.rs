@@ -1,7 +1,7 @@
 //! Asks the grader whether a suite can be graded by, before anybody's submission is.
 use super::{
     child::{Child, End, limit},
-    program::at_home,
+    program::isolate,
 };
 use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
@@ -23,7 +23,7 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;
     let mut command = Command::new(grader);
     command.args(["suite", "check", "suite.toml"]);
-    at_home(&mut command, folder);
+    isolate(&mut command, folder);
     command.stderr(messages.reopen().map_err(|error| error.to_string())?);
     limit(&mut command, MEMORY, SECONDS);
     let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;

@@ -127,7 +127,7 @@ impl Ffmpeg {
     ///
     /// # Errors
     /// When the program has ended.
-    pub(super) fn picture(&mut self, rgba: &[u8]) -> Result<()> {
+    pub(super) fn write_picture(&mut self, rgba: &[u8]) -> Result<()> {
         let pipe = self.pipe.as_mut().context("ffmpeg takes no pictures")?;
         pipe.write_all(rgba).context("ffmpeg takes no more pictures")?;
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);

@@ -11,7 +11,7 @@ use crate::{
     },
     render::{
         Extent, Painter, PictureOptions, Raster, Size,
-        film::{Gif, Rate, png},
+        film::{Gif, Rate, write_png},
         number::short,
         shape::Shape,
         svg,
@@ -168,7 +168,7 @@ impl Reel {
     }
 
     /// Draws every picture; tells its number (from 1), its step and its shapes.
-    fn each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
+    fn for_each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
         let (mut place, mut other) = (Vec::new(), Vec::new());
         let mut bar = console::Bar::new(self.main.pictures);
         for number in 1..=self.main.pictures {
@@ -184,16 +184,16 @@ impl Reel {
             if !self.single || number == self.main.pictures {
                 draw(number, step, &shapes)?;
             }
-            bar.at(number);
+            bar.show_step(number);
         }
         Ok(())
     }
 
     /// Draws every picture in pixels.
-    fn each_raster(&mut self, mut take: impl FnMut(u32, &Raster) -> Result<()>) -> Result<()> {
+    fn for_each_raster(&mut self, mut take: impl FnMut(u32, &Raster) -> Result<()>) -> Result<()> {
         let mut raster = Raster::new(self.size());
         let background = self.painter.background();
-        self.each(|number, _, shapes| {
+        self.for_each(|number, _, shapes| {
             raster.draw(background, shapes);
             take(number, &raster)
         })
@@ -249,7 +249,7 @@ impl RenderTarget {
                 };
                 let background = reel.painter.background();
                 let mut raster = Raster::new(size);
-                reel.each(|number, step, shapes| {
+                reel.for_each(|number, step, shapes| {
                     let bytes = picture(form, &mut raster, background, step, shapes)?;
                     folder.write(&names(number), &bytes)
                 })?;
@@ -268,7 +268,7 @@ impl RenderTarget {
                 reel.single = true;
                 let background = reel.painter.background();
                 let mut raster = Raster::new(size);
-                reel.each(|_, step, shapes| {
+                reel.for_each(|_, step, shapes| {
                     let bytes = picture(form, &mut raster, background, step, shapes)?;
                     Ok(output.write_all(&bytes)?)
                 })?;
@@ -278,14 +278,14 @@ impl RenderTarget {
             (Self::Stream(output), RenderFormat::Mp4) => {
                 let mut encoder = Ffmpeg::start(size, rate, output)?;
                 // The words of ffmpeg when it ends early explain more than that its pipe is closed.
-                let drawn = reel.each_raster(|_, raster| encoder.picture(raster.rgba()));
+                let drawn = reel.for_each_raster(|_, raster| encoder.write_picture(raster.rgba()));
                 encoder.finish(drawn)?;
                 Ok(film(0))
             }
             (Self::Stream(output), _) => {
                 let mut out = CountedWriter { out: BufWriter::new(output), bytes: 0 };
                 let mut gif = Gif::new(&mut out, size, rate, &reel.painter.colors())?;
-                reel.each_raster(|_, raster| Ok(gif.picture(raster)?))?;
+                reel.for_each_raster(|_, raster| Ok(gif.write_picture(raster)?))?;
                 gif.finish()?;
                 let bytes = out.bytes;
                 out.out.into_inner().map_err(std::io::IntoInnerError::into_error)?.finish()?;
@@ -308,7 +308,7 @@ fn picture(
     }
     raster.draw(background, shapes);
     let mut bytes = Vec::new();
-    png(raster, &mut bytes).context("the picture can't be encoded")?;
+    write_png(raster, &mut bytes).context("the picture can't be encoded")?;
     Ok(bytes)
 }
 

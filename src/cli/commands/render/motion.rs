@@ -129,7 +129,7 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
             break;
         }
         keeper.step(step, &simulation.state().positions)?;
-        bar.at(step);
+        bar.show_step(step);
     }
     drop(bar);
     keeper.finish("the reference's run".to_owned(), stopped)
@@ -164,7 +164,7 @@ pub(super) fn traced(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion>
             }
         }
     }
-    trace.not_failed()?;
+    trace.ensure_not_failed()?;
     keeper.finish(format!("the trace {}", trace.name), stopped)
 }
 

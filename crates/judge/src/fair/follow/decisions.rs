@@ -42,7 +42,7 @@ impl Follower<'_> {
         };
         // A decision that is charged is not excused as well.
         if decision.collides() != is_expected && self.judged.total() == findings {
-            self.judged.borderline(self.pass, pair, decision.collides());
+            self.judged.note_borderline(self.pass, pair, decision.collides());
         }
         if self.sensitivity.is_some() && self.is_hybrid() && self.is_borderline(call) {
             self.borderline.push(call);

@@ -170,13 +170,13 @@ impl<'a> Follower<'a> {
         let Records { frame, before, end, .. } = self.records;
         let tolerances = Tolerances::from_context(self.context, own, self.sensitivity.map(|known| &known.end));
         let known = matches!(self.context.scene.collision, Collision::Penalty { .. }).then(|| self.judged.clone());
-        contact::states(&mut self.judged, frame, own, &end.state, &tolerances);
+        contact::compare_states(&mut self.judged, frame, own, &end.state, &tolerances);
         let Some(known) = known.filter(|known| known.total() < self.judged.total()) else { return };
         let explained = unapplied::explain(self.context, &tolerances, before, own, &end.state);
         if let Some((pairs, faulty)) = explained {
             self.judged = known;
             pairs.into_iter().for_each(|detail| self.charge(detail));
-            contact::states(&mut self.judged, frame, &faulty, &end.state, &tolerances);
+            contact::compare_states(&mut self.judged, frame, &faulty, &end.state, &tolerances);
         }
     }
 
@@ -308,7 +308,7 @@ impl Steer for Follower<'_> {
         if !self.tainted[0] {
             let bounds = self.sensitivity.map(|known| &known.mid);
             let tolerances = Tolerances::from_context(self.context, state, bounds);
-            contact::states(&mut self.judged, self.records.frame - 1, state, &mid.state, &tolerances);
+            contact::compare_states(&mut self.judged, self.records.frame - 1, state, &mid.state, &tolerances);
         }
         if mid.state.is_finite() {
             state.clone_from(&mid.state);

@@ -38,10 +38,10 @@ pub(super) fn several(
     if !Layout::for_scene(scene).polynomials {
         return search.together();
     }
-    let mut found = search.starts().into_iter().find_map(|start| search.from(start))?;
+    let mut found = search.starts().into_iter().find_map(|start| search.complete(start))?;
     // A stage that is not written may look like a mistake in one that is.
     if found.rows.iter().any(|row| is_empty_stage(row))
-        && let Some(other) = search.from(Vec::new())
+        && let Some(other) = search.complete(Vec::new())
         && other.rows.len() <= found.rows.len()
     {
         let is_new = |row: &&&Row| found.rows.iter().all(|known| known.mistake != row.mistake);
@@ -79,7 +79,7 @@ impl<'a> Search<'a> {
     }
 
     /// Adds rows to a set of empty stages until it reproduces everything.
-    fn from(&self, mut set: Vec<&'static Row>) -> Option<SeveralRows> {
+    fn complete(&self, mut set: Vec<&'static Row>) -> Option<SeveralRows> {
         // The rows that were as good as each row when that one was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);

@@ -148,7 +148,8 @@ fn hybrid() -> Scene {
 }
 
 fn made(scene: &Scene, ids: &[&str]) -> Vec<u8> {
-    let student = ids.iter().fold(Student::default(), |student, id| student.and(find(id).map(|row| row.mistake)));
+    let student =
+        ids.iter().fold(Student::default(), |student, id| student.with_mistake(find(id).map(|row| row.mistake)));
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
@@ -244,9 +245,9 @@ fn a_trace_that_leads_nowhere_is_left() {
     let state =
         |y| State { positions: vec![0.0, y, -0.25, 0.0, 0.25, 0.0], velocities: vec![1.0, 0.0, 0.0, 0.0, 0.0, 0.0] };
     let mut writer = Writer::new(Vec::new(), layout);
-    writer.frame(&Frame { state: state(100.0), ..Frame::default() });
+    writer.write_frame(&Frame { state: state(100.0), ..Frame::default() });
     for _ in 1..layout.records() {
-        writer.frame(&Frame { state: state(0.0), ..Frame::default() });
+        writer.write_frame(&Frame { state: state(0.0), ..Frame::default() });
     }
     let trace = writer.finish().expect("written").0;
     assert!(explain(&scene, &trace).iter().all(|one| one.samples <= 2), "only the first step has a result");

@@ -47,7 +47,8 @@ impl<'a> Trials<'a> {
 
     /// Returns the program with these mistakes.
     pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
-        let student: Student = rows.iter().fold(self.correct.with(None), |student, row| student.and(Some(row.mistake)));
+        let student: Student =
+            rows.iter().fold(self.correct.with(None), |student, row| student.with_mistake(Some(row.mistake)));
         let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
         Program { world: self.world.for_student(student), logs_wrongly }
     }

@@ -18,10 +18,10 @@ const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 /// Returns the structural guesses that reproduce at least half of the wrong samples.
 pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut found = Vec::new();
-    properties(study, &mut found);
-    rearrangements(study, &mut found);
-    other_polynomials(study, &mut found);
-    cuts(study, &mut found);
+    add_properties(study, &mut found);
+    add_rearrangements(study, &mut found);
+    add_other_polynomials(study, &mut found);
+    add_cuts(study, &mut found);
     found.extend(scaled_displacements(study));
     found
 }
@@ -32,7 +32,7 @@ fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reprod
 }
 
 /// Properties that need no prediction.
-fn properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
+fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, detail, cost, holds: &dyn Fn(&Case) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
             found.push(general(guess, detail, cost, reproduced));
@@ -98,7 +98,7 @@ fn predicted(
 }
 
 /// Adds guesses with the polynomial's own coefficients in another order or with another sign.
-fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
+fn add_rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, cost, change: &dyn Fn(&[BoundedValue]) -> Vec<BoundedValue>| {
         found.extend(predicted(study, guess, None, cost, |case| change(&case.expected)));
     };
@@ -120,7 +120,7 @@ fn rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 }
 
 /// Polynomials of the same detection in each other's places.
-fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
+fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for &other in Subject::all_of_kind(study.subject.kind()) {
         if other == study.subject {
             continue;
@@ -135,7 +135,7 @@ fn other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 }
 
 /// Adds guesses with the polynomial's first or last coefficients only.
-fn cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
+fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
         let (last, first) = (PolynomialDetail::LastOnly(length), PolynomialDetail::FirstOnly(length));

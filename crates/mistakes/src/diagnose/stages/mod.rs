@@ -26,7 +26,7 @@ use fosssim_model::scene::{Collision, Scene};
 const MOST_STEPS: usize = 120;
 
 /// And the greatest number of polynomials; about a microsecond each.
-const WORK: usize = 200_000;
+const MOST_POLYNOMIALS: usize = 200_000;
 
 /// Ratios that are this close are the same.
 const ALIKE: f64 = 1e-6;
@@ -45,7 +45,7 @@ pub(super) fn explain<'a>(
     let facts: Vec<StepFacts> = steps
         .take(MOST_STEPS)
         .take_while(|kept| {
-            let goes_on = work < WORK;
+            let goes_on = work < MOST_POLYNOMIALS;
             work += kept.records.end.polynomials.len();
             goes_on
         })

@@ -130,7 +130,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
             if group.stops(scene) {
                 return observation(StageFault::AfterRounds, Vec::new(), ends.len());
             }
-            measured.velocities(scene, &facts.before, actual, &group);
+            measured.measure_velocities(scene, &facts.before, actual, &group);
         }
     }
     let (wrong, details) = measured.describe();
@@ -164,21 +164,21 @@ impl ZoneMotions {
             let fate = if first.is_seen(zone) { first.fate(zone) } else { Fate::Wrong(WrongZones::NotMerged) };
             self.fates.push(fate);
             match fate {
-                Fate::Wrong(WrongZones::KeepVelocities) => self.kept(&first, zone),
+                Fate::Wrong(WrongZones::KeepVelocities) => self.note_kept_velocities(&first, zone),
                 Fate::Bent if zone.stops(scene) => self.bent_stops += 1,
                 Fate::Bent | Fate::Rigid => {
                     let is_one = first.contacts_of(zone).len() < 2;
                     if fate == Fate::Bent {
                         *(if is_one { &mut self.bent_of_one } else { &mut self.bent_of_many }) += 1;
                     }
-                    self.measured.motion(scene, &first, zone);
+                    self.measured.measure_motion(scene, &first, zone);
                 }
                 _ => {}
             }
         }
     }
 
-    fn kept(&mut self, first: &FirstRound<'_>, zone: &Group) {
+    fn note_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &Group) {
         for &one in &zone.particles {
             let (was, is) = (at(&first.middle.velocities, one), at(&first.end.velocities, one));
             if length(was) > SMALL {
@@ -245,7 +245,7 @@ struct MotionErrors {
 }
 
 impl MotionErrors {
-    fn motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
+    fn measure_motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
         let (start, expected, end) = (&first.facts.before, first.expected(zone), first.end);
         let [from, ours, theirs] = [start, &expected, end].map(|state| center(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
@@ -271,11 +271,11 @@ impl MotionErrors {
         } else {
             self.is_bent = true;
         }
-        self.velocities(scene, start, end, zone);
+        self.measure_velocities(scene, start, end, zone);
     }
 
     /// Velocities over the motion from the start to the end of the step.
-    fn velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
+    fn measure_velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
         for &one in &zone.particles {
             let motion = over(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
             let velocity = at(&end.velocities, one);

@@ -14,7 +14,7 @@ mod states;
 #[test]
 fn a_mistake_beside_another_is_told_once() {
     let rows = ["pe-radii-squared-apart", "failsafe-empty"].map(|id| student::find(id).expect("it is known"));
-    let author = rows.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
+    let author = rows.iter().fold(Student::default(), |student, row| student.with_mistake(Some(row.mistake)));
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../assets/t2m2/HolisticTests");
     let explained = ["funnel-of-fractional-masses", "rope-bridge", "pendulum-into-a-wall-of-balls"].map(|name| {
         #[expect(clippy::disallowed_methods, reason = "a test reads the scenes that come with the program")]
@@ -67,7 +67,7 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     let scenes = probe_scenes(Assignment::T2M2);
     let row = |id| student::find(id).expect("it is known");
     let said = |program: &[&Row], probe: &str| {
-        let author = program.iter().fold(Student::default(), |student, row| student.and(Some(row.mistake)));
+        let author = program.iter().fold(Student::default(), |student, row| student.with_mistake(Some(row.mistake)));
         let (_, scene) = scenes.iter().find(|(name, _)| name == probe).expect("a probe scene");
         explain(scene, &student::trace(scene, author).unwrap_or_else(|(bytes, _)| bytes))
     };

@@ -26,7 +26,7 @@ fn frames(scene: &Scene) -> Vec<LenientFrame> {
 fn written(scene: &Scene, frames: Vec<LenientFrame>) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
     for LenientFrame { state, impulses, polynomials, .. } in frames {
-        writer.frame(&Frame { state, impulses, polynomials });
+        writer.write_frame(&Frame { state, impulses, polynomials });
     }
     writer.finish().expect("written").0
 }

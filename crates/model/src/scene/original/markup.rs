@@ -130,12 +130,12 @@ impl<'t> Cursor<'t> {
                 self.at += 1;
                 self.skip_past(b"?>").map(|()| None)
             }
-            b'!' => self.declaration().map(|()| None),
+            b'!' => self.skip_declaration().map(|()| None),
             _ => self.element().map(Some),
         }
     }
 
-    fn declaration(&mut self) -> Result<(), &'static str> {
+    fn skip_declaration(&mut self) -> Result<(), &'static str> {
         let rest = self.rest();
         if rest.starts_with(b"!--") {
             self.at += 3;
@@ -204,7 +204,7 @@ impl<'t> Cursor<'t> {
         let mut value = plain.to_vec();
         loop {
             match self.peek(0) {
-                b'&' => self.reference(&mut value)?,
+                b'&' => self.translate_reference(&mut value)?,
                 byte if byte == end || byte == 0 => return Ok(Cow::Owned(value)),
                 byte => {
                     value.push(byte);
@@ -215,7 +215,7 @@ impl<'t> Cursor<'t> {
     }
 
     /// Translates one `&...;`; an unknown name is copied as it stands.
-    fn reference(&mut self, value: &mut Vec<u8>) -> Result<(), &'static str> {
+    fn translate_reference(&mut self, value: &mut Vec<u8>) -> Result<(), &'static str> {
         const NAMED: [(&[u8], u8); 5] =
             [(b"&amp;", b'&'), (b"&apos;", b'\''), (b"&quot;", b'"'), (b"&gt;", b'>'), (b"&lt;", b'<')];
         let rest = self.rest();

@@ -76,14 +76,14 @@ pub(super) fn handle<O: Observer>(
     if synchronize(observer, state) == Resume::Synchronized {
         scratch.state.clone_from(state);
     }
-    geometric(bodies, law, detector, scratch, q_start, observer)?;
+    move_zones(bodies, law, detector, scratch, q_start, observer)?;
     state.clone_from(&scratch.state);
     Ok(())
 }
 
 /// Moves impact zones rigidly until a detection pass makes no zone grow. Every round joins zones, adds particles to
 /// one or adds a half-plane to one, so there are at most about 3N rounds.
-fn geometric<O: Observer>(
+fn move_zones<O: Observer>(
     bodies: &Bodies,
     law: &Law,
     detector: &mut Detector,

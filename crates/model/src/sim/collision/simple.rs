@@ -37,13 +37,13 @@ pub(super) fn handle<O: Observer>(
         let [particles, edges, half_planes] = bodies.objects().row(PassCursor::at(i));
         if let Some(found) = &mut found {
             let [particles, edges] = found.next(i);
-            particles.for_each(|j| looking.at_particles(i, j));
-            edges.for_each(|edge| looking.at_edge(i, edge));
+            particles.for_each(|j| looking.try_particles(i, j));
+            edges.for_each(|edge| looking.try_edge(i, edge));
         } else {
-            particles.for_each(|j| looking.at_particles(i, j));
-            edges.filter(|&edge| !is_end(bodies.edges[edge], i)).for_each(|edge| looking.at_edge(i, edge));
+            particles.for_each(|j| looking.try_particles(i, j));
+            edges.filter(|&edge| !is_end(bodies.edges[edge], i)).for_each(|edge| looking.try_edge(i, edge));
         }
-        half_planes.for_each(|half_plane| looking.at_half_plane(i, half_plane));
+        half_planes.for_each(|half_plane| looking.try_half_plane(i, half_plane));
     }
     let hits = looking.hits;
     observer.end_pass(pass, hits);
@@ -62,14 +62,14 @@ struct RunningPass<'a, O> {
 }
 
 impl<O: Observer> RunningPass<'_, O> {
-    fn at_particles(&mut self, i: usize, j: usize) {
+    fn try_particles(&mut self, i: usize, j: usize) {
         let normal = particle_particle::overlap(self.bodies, self.x, self.v, i, j);
         self.settle(PairKind::ParticleParticle, i, j, normal, |looking, n| {
             particle_particle::simple_response(looking.bodies, looking.factor, looking.v, i, j, n)
         });
     }
 
-    fn at_edge(&mut self, i: usize, edge: usize) {
+    fn try_edge(&mut self, i: usize, edge: usize) {
         let normal = particle_edge::overlap(self.bodies, self.x, self.v, i, edge);
         self.settle(PairKind::ParticleEdge, i, edge, normal, |looking, n| {
             let (bodies, ends) = (looking.bodies, looking.bodies.edges[edge]);
@@ -77,7 +77,7 @@ impl<O: Observer> RunningPass<'_, O> {
         });
     }
 
-    fn at_half_plane(&mut self, i: usize, half_plane: usize) {
+    fn try_half_plane(&mut self, i: usize, half_plane: usize) {
         let normal = particle_half_plane::overlap(self.bodies, self.x, self.v, i, half_plane);
         self.settle(PairKind::ParticleHalfPlane, i, half_plane, normal, |looking, n| {
             particle_half_plane::simple_response(looking.factor, looking.v, i, n)

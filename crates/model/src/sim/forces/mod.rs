@@ -52,7 +52,7 @@ impl Forces {
     }
 
     /// Fills `gradient` (2N) with dU/dx of all forces at positions `x` and velocities `v`.
-    pub fn gradient(&mut self, bodies: &Bodies, x: &[f64], v: &[f64], gradient: &mut [f64]) {
+    pub fn fill_gradient(&mut self, bodies: &Bodies, x: &[f64], v: &[f64], gradient: &mut [f64]) {
         gradient.fill(0.0);
         for force in &self.list {
             match *force {

@@ -49,7 +49,7 @@ pub(super) fn advance(
             x[k] = state.positions[k] + dx[k];
             v[k] = state.velocities[k] + dv[k];
         }
-        system.forces.gradient(bodies, x, v, rhs);
+        system.forces.fill_gradient(bodies, x, v, rhs);
         for k in 0..entries {
             rhs[k] *= minus_h;
             rhs[k] += -(bodies.masses[k / 2] * dv[k]);
@@ -115,7 +115,7 @@ mod tests {
         let after = simulation.state();
         let mut gradient = vec![0.0; 4];
         let (bodies, mut forces) = (Bodies::new(&scene), Forces::new(&scene));
-        forces.gradient(&bodies, &after.positions, &after.velocities, &mut gradient);
+        forces.fill_gradient(&bodies, &after.positions, &after.velocities, &mut gradient);
         for (k, gradient) in gradient.iter().enumerate() {
             let velocity = before.velocities[k] - 0.5 * gradient / bodies.masses[k / 2];
             assert!((after.velocities[k] - velocity).abs() < 1e-8, "{k}");

@@ -19,7 +19,7 @@ pub(super) fn advance(
         // Adding zero turns a -0 into +0, as the original does.
         *v = velocity + 0.0;
     }
-    system.forces.gradient(bodies, x, v, rhs);
+    system.forces.fill_gradient(bodies, x, v, rhs);
     for entry in rhs.iter_mut() {
         *entry *= minus_one;
         *entry *= h;

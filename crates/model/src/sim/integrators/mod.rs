@@ -121,12 +121,12 @@ impl Stepper {
                 linearized::advance(&mut system, self.minus_one, &mut self.gradient, scratch, state);
             }
             (Integrator::ExplicitEuler, _) => {
-                self.force(bodies, forces, state);
+                self.compute_force(bodies, forces, state);
                 add_scaled(&mut state.positions, h, &state.velocities);
                 add_scaled_accelerations(&mut state.velocities, h, &self.gradient, &bodies.masses);
             }
             (Integrator::ForwardBackwardEuler | Integrator::SymplecticEuler, _) => {
-                self.force(bodies, forces, state);
+                self.compute_force(bodies, forces, state);
                 add_scaled_accelerations(&mut state.velocities, h, &self.gradient, &bodies.masses);
                 add_scaled(&mut state.positions, h, &state.velocities);
             }
@@ -138,8 +138,8 @@ impl Stepper {
     }
 
     /// Replaces the gradient array by the forces `-1 * g` at the current state, zero for fixed particles.
-    fn force(&mut self, bodies: &Bodies, forces: &mut Forces, state: &State) {
-        forces.gradient(bodies, &state.positions, &state.velocities, &mut self.gradient);
+    fn compute_force(&mut self, bodies: &Bodies, forces: &mut Forces, state: &State) {
+        forces.fill_gradient(bodies, &state.positions, &state.velocities, &mut self.gradient);
         for entry in &mut self.gradient {
             *entry *= self.minus_one;
         }

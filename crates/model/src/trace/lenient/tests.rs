@@ -66,7 +66,7 @@ fn record(polynomials: &[&[f64]]) -> Vec<u8> {
     let mut frame = Frame::default();
     polynomials.iter().for_each(|p| frame.polynomials.push(p));
     let mut writer = Writer::new(Vec::new(), LAYOUT);
-    writer.frame(&frame);
+    writer.write_frame(&frame);
     writer.finish().unwrap().0
 }
 

@@ -63,7 +63,7 @@ impl Text<'_> {
                 let why = words::unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
-                self.submission(&mut text, grade, grades.len() > 1);
+                self.write_submission(&mut text, grade, grades.len() > 1);
             }
         }
         if grades.len() > 1 && self.shown > TextDetail::Line {
@@ -74,7 +74,7 @@ impl Text<'_> {
 
     /// Writes one submission. Its verdict is above its scenes and, unless others follow, below them, where it stays in
     /// sight.
-    fn submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
+    fn write_submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
             let _ = writeln!(text, "{}", self.verdict(grade));

@@ -24,7 +24,7 @@ pub fn what(explanation: &Explanation) -> String {
             let length = if *has_length { "" } else { ", and neither is its length" };
             format!("Does this trace belong to this scene? Its first record is not the scene's{length}.")
         }
-        About::Polynomials { subjects, found } => polynomials::what(subjects, found),
+        About::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
         About::Stage(fault) => stages::what(fault),
         About::Pairs(wrong) => near::what(wrong),
         About::NotFinite(found) => not_finite::what(found),

@@ -6,7 +6,7 @@ use fosssim_mistakes::diagnose::{
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter};
 
 /// Returns the fault of these polynomials.
-pub(super) fn what(subjects: &[Subject], found: &OfPolynomials) -> String {
+pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
     let place = capitalized(&names);

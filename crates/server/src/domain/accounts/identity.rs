@@ -152,7 +152,7 @@ pub(in crate::domain) async fn account_of_session(
 }
 
 /// Lets a session last from now on.
-pub(in crate::domain) async fn session_seen(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
+pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
     transaction.execute(statement, values![SESSION, digest(session)]).await.map(drop)
 }

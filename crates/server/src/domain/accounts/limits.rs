@@ -101,7 +101,7 @@ impl Member {
     }
 
     /// Notes that an archive was accepted.
-    pub fn archive_was_right(&self) {
+    pub fn note_right_archive(&self) {
         self.app.limits.refused.put_back(self.account.id);
     }
 
@@ -125,7 +125,7 @@ impl Member {
     ///
     /// # Errors
     /// When the database does not answer.
-    pub async fn told_of_kept(&self) -> Result<Vec<String>, Problem> {
+    pub async fn describe_kept_bytes(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let [student, course, server] = self.shares(&mut transaction).await?;
         let shares = [("you", student, false), ("this course", course, self.is_staff), ("this server", server, false)];

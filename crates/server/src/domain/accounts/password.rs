@@ -104,7 +104,7 @@ struct Try<'a> {
 }
 
 impl Try<'_> {
-    fn was_right(&self) {
+    fn note_right(&self) {
         self.buckets.iter().for_each(|bucket| self.passwords.tries.put_back(*bucket));
     }
 }
@@ -138,7 +138,7 @@ impl Visitor {
         let (given, of_account) = (password.to_owned(), kept.clone());
         let right = in_turn(move || is_kept(&given, of_account.as_deref())).await?;
         let (true, Some(row)) = (right, row) else { return Err(Problem::wrong_password()) };
-        attempt.was_right();
+        attempt.note_right();
         let account = row.int("id")?;
         let mut transaction = self.app.0.database.begin().await?;
         // It may have been changed, or the account shut, while the digest was computed.
@@ -178,7 +178,7 @@ impl Person {
             _ => digest(&new, &random_hex()),
         });
         let digest = digest.await?;
-        attempt.was_right();
+        attempt.note_right();
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE account SET password = ? WHERE id = ? AND coalesce(password, '') = ?";
         let changed =

@@ -92,7 +92,7 @@ impl Staff {
             WHERE submission.id = ? AND assignment.course = ?";
         let found = transaction.row(statement, values![id, self.course]).await?;
         let Some(found) = found else { return Err(Problem::not_found("submission")) };
-        score::changed(&mut transaction, id).await?;
+        score::note_change(&mut transaction, id).await?;
         remove_submissions(&mut transaction, "SELECT id FROM submission WHERE id = ?", id).await?;
         self.note(&mut transaction, "removed", Some(found.int("id")?), "a submission").await?;
         Ok(self.app.0.notifier.commit(transaction).await?)

@@ -26,7 +26,7 @@ impl App {
                 let (account, seen) = found.ok_or_else(|| Problem::unknown_secret("session", "sign in again"))?;
                 if seen.is_stale {
                     let mut transaction = self.0.database.begin().await?;
-                    identity::session_seen(&mut transaction, session).await?;
+                    identity::extend_session(&mut transaction, session).await?;
                     transaction.commit().await?;
                 }
                 (account, Some(seen))

@@ -98,7 +98,7 @@ impl Visitor {
     ///
     /// # Errors
     /// When they can't.
-    pub async fn ready(&self) -> Result<(), Problem> {
+    pub async fn check_ready(&self) -> Result<(), Problem> {
         self.app.0.storage.prove().await
     }
 

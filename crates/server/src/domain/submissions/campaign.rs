@@ -67,7 +67,7 @@ pub(in crate::domain) async fn apply(
         SELECT submission, id, {now} FROM result WHERE campaign = ? AND code <> ? ORDER BY submission
         ON CONFLICT (submission) DO UPDATE SET result = excluded.result, set_at = excluded.set_at";
     transaction.execute(statement, values![campaign, JUDGE_ERROR]).await?;
-    score::changed_by(transaction, campaign).await
+    score::note_regrade(transaction, campaign).await
 }
 
 /// Takes what is left of a regrade out of the queue.

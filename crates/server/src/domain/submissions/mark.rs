@@ -124,7 +124,7 @@ impl Staff {
         };
         let entry = self.entry("marked", None, &text);
         view::note(&mut transaction, &Entry { submission: Some(id), ..entry }).await?;
-        score::changed(&mut transaction, id).await?;
+        score::note_change(&mut transaction, id).await?;
         self.app.0.notifier.commit(transaction).await?;
         self.submission(id).await
     }
@@ -196,7 +196,7 @@ impl Staff {
         }
         let statement = "SELECT max(id) AS id FROM submission WHERE assignment = ? AND account = ?";
         if let Some(last) = transaction.one(statement, values![assignment.id, account]).await?.maybe_int("id")? {
-            score::changed(&mut transaction, last).await?;
+            score::note_change(&mut transaction, last).await?;
         }
         let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
         let text = format!("{login} hands in {until}");

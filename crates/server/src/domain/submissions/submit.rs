@@ -217,7 +217,7 @@ impl Member {
         let (turn, payload) = (Turn::Student(account), &serde_json::to_string(&task).map_err(|_| Problem::fault())?);
         let job = NewJob { lane: Lane::Grading, submission: Some(submission), campaign: None, turn, payload };
         queue::enqueue(transaction, &job).await?;
-        score::changed(transaction, submission).await?;
+        score::note_change(transaction, submission).await?;
         if let Some(key) = upload.key {
             let statement =
                 "INSERT INTO upload_key (account, word, assignment, digest, submission) VALUES (?, ?, ?, ?, ?)";

@@ -16,7 +16,7 @@ pub(super) async fn health() -> &'static str {
 #[utoipa::path(get, path = "/ready", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Requests can be served")))]
 pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
-    visitor.ready().await?;
+    visitor.check_ready().await?;
     Ok("ready\n")
 }
 

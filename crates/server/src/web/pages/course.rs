@@ -130,7 +130,7 @@ pub(super) async fn course(member: Member) -> Page {
         assignments.push(Row { assignment, work, overview });
     }
     let place = format!("/c/{}", member.slug);
-    let (frame, kept) = (PageFrame::course(&member).then(place, &member.title), member.told_of_kept().await?);
+    let (frame, kept) = (PageFrame::course(&member).then(place, &member.title), member.describe_kept_bytes().await?);
     show(&CoursePage { frame, member, assignments, kept })
 }
 

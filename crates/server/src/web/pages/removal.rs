@@ -17,19 +17,19 @@ pub(super) struct Confirmation {
 }
 
 impl Confirmation {
-    fn is(&self, what: &str) -> Result<(), Problem> {
+    fn ensure_is(&self, what: &str) -> Result<(), Problem> {
         if self.confirm == what { Ok(()) } else { Err(Problem::invalid("this form belongs to something else")) }
     }
 }
 
 deeds! {
     remove_submission(staff: Staff, { course, id }, form: Confirmation):
-        { form.is(&id.to_string())?; staff.remove_submission(id) } => "/c/{course}";
+        { form.ensure_is(&id.to_string())?; staff.remove_submission(id) } => "/c/{course}";
     remove_assignment(staff: Staff, { course, assignment }, form: Confirmation):
-        { form.is(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
+        { form.ensure_is(&assignment)?; staff.remove_assignment(&assignment) } => "/c/{course}";
     remove_course(admin: Admin, { course }, form: Confirmation):
-        { form.is(&course)?; admin.remove_course(&course) } => "/";
+        { form.ensure_is(&course)?; admin.remove_course(&course) } => "/";
     remove_person(admin: Admin, { login }, form: Confirmation):
-        { form.is(&login)?; admin.remove_person(&login) } => "/admin/people";
+        { form.ensure_is(&login)?; admin.remove_person(&login) } => "/admin/people";
     shut_account(admin: Admin, { login }): admin.disable_account(&login) => "/admin/people";
 }

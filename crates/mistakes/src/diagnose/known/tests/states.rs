@@ -58,7 +58,8 @@ fn scene(name: &str) -> Scene {
 }
 
 fn trace(scene: &Scene, ids: &[&str]) -> Vec<u8> {
-    let student = ids.iter().fold(Student::default(), |student, id| student.and(find(id).map(|row| row.mistake)));
+    let student =
+        ids.iter().fold(Student::default(), |student, id| student.with_mistake(find(id).map(|row| row.mistake)));
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 

@@ -48,7 +48,7 @@ impl Lists {
         let Setting { bodies, q_start, displacements, .. } = setting;
         // Even an empty list has entries behind its end.
         if self.particles[4].is_empty() {
-            self.constants(bodies);
+            self.fill_constants(bodies);
         }
         let [x, y, dx, dy, _] = &mut self.particles;
         for ((start, shift), (((x, y), dx), dy)) in
@@ -96,7 +96,7 @@ impl Lists {
     }
 
     /// Fills the lists of values that do not change while the scene is simulated.
-    fn constants(&mut self, bodies: &Bodies) {
+    fn fill_constants(&mut self, bodies: &Bodies) {
         let (count, edges) = (bodies.particles(), bodies.edges.len());
         self.own_edges = vec![Vec::new(); count];
         for (edge, ends) in bodies.edges.iter().enumerate() {

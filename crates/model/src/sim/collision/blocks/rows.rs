@@ -47,7 +47,7 @@ impl Work for Pairs<'_> {
             self.counts.calls += excluded;
             self.counts.excluded += excluded;
             if let Some(bytes) = &mut bytes {
-                bytes.added(used, polynomials);
+                bytes.count_added(used, polynomials);
                 bytes.raise(largest.max(self.group.largest));
             }
             self.bytes = bytes;

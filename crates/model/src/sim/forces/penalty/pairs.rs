@@ -62,8 +62,8 @@ impl PenaltyPairs {
         let edges_of = |i: usize| (0..edges.len()).filter(move |&edge| !is_end(edges[edge], i));
         if let Some(sweep) = &mut self.sweep {
             sweep.update(x);
-            sweep.particles(|i, j| hear(pair(PairKind::ParticleParticle, i, j)));
-            sweep.edges(|i, edge| hear(pair(PairKind::ParticleEdge, i, edge)));
+            sweep.visit_particles(|i, j| hear(pair(PairKind::ParticleParticle, i, j)));
+            sweep.visit_edges(|i, edge| hear(pair(PairKind::ParticleEdge, i, edge)));
             for i in 0..particles {
                 let [.., half_planes] = row(i);
                 half_planes.for_each(|half_plane| hear(pair(PairKind::ParticleHalfPlane, i, half_plane)));

@@ -104,7 +104,7 @@ impl Sweep {
     }
 
     /// Hands all near pairs of particles to `hear`, the smaller number first.
-    pub fn particles(&self, mut hear: impl FnMut(usize, usize)) {
+    pub fn visit_particles(&self, mut hear: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
         let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {
             if one.overlaps(other) {
@@ -149,7 +149,7 @@ impl Sweep {
     }
 
     /// Hands all particles with the edges near them to `hear`, apart from their own.
-    pub fn edges(&self, mut hear: impl FnMut(usize, usize)) {
+    pub fn visit_edges(&self, mut hear: impl FnMut(usize, usize)) {
         for one in &self.particle_boxes {
             let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
             for other in self.edge_boxes[first..].iter().take_while(|other| !(other.low[0] > one.high[0])) {
