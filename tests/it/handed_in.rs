@@ -29,7 +29,7 @@ fn the_demo_writes_a_wrong_program_that_may_be_handed_in() {
     let unknown = workspace.run(["demo", "--sample", sample, "--mistake", "no-such", "--program", "other"]);
     assert_eq!(unknown.code, Some(2), "{}", unknown.shown());
     let other = workspace.run(["demo", "--sample", "/bin/sh", "--program", "other"]);
-    assert!(other.code == Some(2) && other.err().contains("another version"), "{}", other.shown());
+    assert!(other.code == Some(2) && other.err().contains("is not this version's sample"), "{}", other.shown());
 }
 
 #[test]

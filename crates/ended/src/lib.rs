@@ -1,9 +1,9 @@
 //! How the run of a program ended, as a value: what the sandbox says, grades keep and reports put into words.
 //!
 //! ```
-//! use fosssim_ended::Ended;
+//! use fosssim_ended::RunEnd;
 //!
-//! let ended = Ended::TraceLimit;
+//! let ended = RunEnd::TraceLimit;
 //! assert_eq!(ended.to_string(), "wrote more than allowed to the trace");
 //! assert_eq!(ended.kind(), "output");
 //! ```

@@ -15,14 +15,14 @@
 //! A program becomes the drop-in, where its name or its first word says so:
 //!
 //! ```no_run
-//! use fosssim_original::{Outside, Pictures};
+//! use fosssim_original::{Pictures, Services};
 //! use std::{path::Path, process::ExitCode};
 //! # use fosssim_model::scene::Scene;
 //!
 //! /// A program that draws no pictures.
 //! struct Plain;
 //!
-//! impl Outside for Plain {
+//! impl Services for Plain {
 //!     fn prepare(&self) {}
 //!
 //!     fn pictures(&self, _png: bool, _svg: Option<&Path>, _scene: &Scene) -> Result<Box<dyn Pictures>, String> {

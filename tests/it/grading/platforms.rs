@@ -163,7 +163,7 @@ fn the_element_for_prairielearn_shows_groups_scenes_and_the_mistake_and_nothing_
         let results: serde_json::Value = serde_json::from_slice(&workspace.read("results.json")).expect("JSON");
         let shown = render("submission", serde_json::json!({"succeeded": true, "results": results}));
         for words in
-            [message, "most likely mistake: Particle-edge: ", "of 10<", "&lt;i&gt;Zones", "ImpulsesTests/off-center"]
+            [message, "most likely mistake: Particle-edge: ", "of 10<", "&lt;i&gt;Zones", "ImpulsesTests/off-centre"]
         {
             assert!(shown.contains(words), "{words}: {shown}");
         }
