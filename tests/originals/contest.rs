@@ -8,7 +8,7 @@ use crate::{
     workspace::{Run, Workspace, simulate},
 };
 
-const SCENES: u64 = 1000;
+const SCENES: u64 = 500;
 
 /// Random numbers (SplitMix64).
 struct Numbers(u64);
