@@ -46,8 +46,9 @@ pub struct CourseNote {
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let points = self.points.map(|points| format!("rubric: {points} points"));
-        let parts: Vec<&str> =
-            [&self.text, &self.link, &points].into_iter().filter_map(|part| part.as_deref()).collect();
+        let text = self.text.as_deref().map(|text| text.trim_end_matches('.'));
+        let parts = [text, self.link.as_deref(), points.as_deref()];
+        let parts: Vec<&str> = parts.into_iter().flatten().collect();
         formatter.write_str(&parts.join("; "))
     }
 }

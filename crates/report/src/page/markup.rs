@@ -36,7 +36,7 @@ pub(super) fn text(raw: &str) -> String {
 /// Returns a course's own words on something, with a link that can be followed.
 pub(super) fn note(note: Option<&CourseNote>) -> String {
     let Some(CourseNote { text: words, link, points }) = note else { return String::new() };
-    let words = words.as_deref().map(text);
+    let words = words.as_deref().map(|words| text(words.trim_end_matches('.')));
     let link = link.as_deref().map(text).map(|link| format!("<a href=\"{link}\" rel=\"noopener\">{link}</a>"));
     let points = points.map(|points| format!("rubric: {points} points"));
     let parts: Vec<String> = [words, link, points].into_iter().flatten().collect();

@@ -437,7 +437,7 @@ fn a_course_adds_its_own_words() {
     let mut grade = wrong(vec![result], Hints::Full);
     fosssim_mistakes::together::settle(&mut grade);
     let note = CourseNote {
-        text: Some("Lecture <9>".to_owned()),
+        text: Some("Lecture <9>.".to_owned()),
         link: Some("https://example.edu/9?a&b".to_owned()),
         points: Some(2.0),
     };
