@@ -42,14 +42,20 @@ pub struct CourseNote {
     pub points: Option<f64>,
 }
 
+impl CourseNote {
+    /// Writes it in a line: a report says how text and an address are written there.
+    pub fn line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
+        let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
+        let points = self.points.map(|points| format!("rubric points: {points}"));
+        let parts: Vec<String> = [words, self.link.as_deref().map(link), points].into_iter().flatten().collect();
+        parts.join("; ")
+    }
+}
+
 /// A line of text, with the address as it is.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let points = self.points.map(|points| format!("rubric: {points} points"));
-        let text = self.text.as_deref().map(|text| text.trim_end_matches('.'));
-        let parts = [text, self.link.as_deref(), points.as_deref()];
-        let parts: Vec<&str> = parts.into_iter().flatten().collect();
-        formatter.write_str(&parts.join("; "))
+        formatter.write_str(&self.line(str::to_owned, str::to_owned))
     }
 }
 

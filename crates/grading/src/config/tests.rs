@@ -46,7 +46,7 @@ fn a_course_s_own_words_have_a_known_key_and_an_address() {
         )
     };
     let suite = read(&text("pp-no-two", "https://example.edu/9")).expect("a suite");
-    assert_eq!(suite.notes["pp-no-two"].to_string(), "https://example.edu/9; rubric: 2 points");
+    assert_eq!(suite.notes["pp-no-two"].to_string(), "https://example.edu/9; rubric points: 2");
     assert_eq!(suite.groups[0].note.as_ref().expect("a note").to_string(), "Section 3");
     let error = read(&text("pp-no-tow", "javascript:alert(1)")).unwrap_err().to_string();
     assert!(error.contains("4:7: no mistake has the key \"pp-no-tow\"; did you mean \"pp-no-two\"?"), "{error}");

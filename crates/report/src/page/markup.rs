@@ -35,12 +35,9 @@ pub(super) fn text(raw: &str) -> String {
 
 /// Returns a course's own words on something, with a link that can be followed.
 pub(super) fn note(note: Option<&CourseNote>) -> String {
-    let Some(CourseNote { text: words, link, points }) = note else { return String::new() };
-    let words = words.as_deref().map(|words| text(words.trim_end_matches('.')));
-    let link = link.as_deref().map(text).map(|link| format!("<a href=\"{link}\" rel=\"noopener\">{link}</a>"));
-    let points = points.map(|points| format!("rubric: {points} points"));
-    let parts: Vec<String> = [words, link, points].into_iter().flatten().collect();
-    format!(" <span class=\"hint\">The course: {}.</span> ", parts.join("; "))
+    let Some(note) = note else { return String::new() };
+    let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", text(address));
+    format!(" <span class=\"hint\">The course: {}.</span> ", note.line(text, link))
 }
 
 /// Returns a line with its formulas set: Unicode's signs, and the index of a letter below it.
