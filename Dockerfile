@@ -19,7 +19,7 @@ RUN { command -v c++ >/dev/null && [ -e /usr/include/GL/freeglut.h ] && [ -e /us
     { apt-get update \
     && apt-get install -y --no-install-recommends build-essential freeglut3-dev libpng-dev \
     && rm -rf /var/lib/apt/lists/*; }
-# Outside of /usr, which build steps may read. The sample, a right submission, is left out: nobody may copy it.
+# Outside of /usr, which build steps may read.
 COPY --from=build /source/target/release/fosssim-oracle /opt/fosssim/fosssim-oracle
 RUN ln -s /opt/fosssim/fosssim-oracle /usr/local/bin/fosssim-oracle
 ENTRYPOINT ["fosssim-oracle"]

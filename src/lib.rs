@@ -34,4 +34,4 @@ pub use fosssim_evidence as evidence;
 
 pub mod cli;
 
-pub mod pin;
+pub mod sample;

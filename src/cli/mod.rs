@@ -12,7 +12,7 @@ mod output;
 mod screen;
 mod selection;
 
-use crate::report::foreign::plain;
+use crate::{report::foreign::plain, sample};
 use anyhow::Result;
 use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
@@ -20,7 +20,11 @@ use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 /// Runs the command that the program's arguments ask for.
 #[must_use]
 pub fn main() -> ExitCode {
-    // First of all, since this is called most often and is over soonest.
+    // A copy to which a mistake is pinned is a submission, and nothing else.
+    if let Some(mistake) = sample::pin::pinned() {
+        return sample::main(std::env::args_os(), Some(mistake));
+    }
+    // Before all other commands, since this is called most often and is over soonest.
     crate::original::run_if_meant(&original::Program).unwrap_or_else(run)
 }
 
@@ -29,6 +33,9 @@ fn run(words: Vec<OsString>) -> ExitCode {
     // Before anything else and before any thread: this process may be a sandbox's supervisor.
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
+    }
+    if words.get(1).is_some_and(|word| word == "sample") {
+        return sample::main(words.into_iter().skip(1), None);
     }
     // A half-written output is then removed like after any other failure.
     crate::sandbox::let_large_writes_fail();

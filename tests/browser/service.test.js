@@ -279,8 +279,7 @@ test(
   { skip: !sandbox && "no sandbox here" },
   async () => {
     const place = mkdtempSync(join(programs, "example-"));
-    for (const name of ["fosssim-oracle", "fosssim-server", "fosssim-sample"])
-      linkSync(join(programs, name), join(place, name));
+    for (const name of ["fosssim-oracle", "fosssim-server"]) linkSync(join(programs, name), join(place, name));
     const example = spawn(
       join(place, "fosssim-oracle"),
       ["serve", "--data", join(place, "course"), "--listen", "127.0.0.1:0", "--example"],

@@ -422,8 +422,7 @@ fn suites_are_written_checked_and_explained() {
 #[test]
 fn the_demo_ends_well() {
     let Some(workspace) = workspace() else { return };
-    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
-    let run = workspace.run(["demo", "--sample", sample]);
+    let run = workspace.run(["demo"]);
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert!(run.out().ends_with("for a browser: fosssim-demo.html\n"), "{}", run.out());
     let page = String::from_utf8(workspace.read("fosssim-demo.html")).expect("text");

@@ -5,31 +5,59 @@ use crate::{
     workspace::Workspace,
 };
 use std::{
-    os::unix::fs::symlink,
+    fs::{self, Permissions},
+    os::unix::fs::{PermissionsExt, symlink},
     process::{Command, Stdio},
 };
 
 #[test]
 fn the_demo_writes_a_wrong_program_that_may_be_handed_in() {
     let Some(workspace) = workspace() else { return };
-    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
-    let grade = |program: &str| workspace.run(["grade", program, "--suite", "suite.toml", "--format", "csv"]);
-    // A copy of the sample itself is nobody's submission: it is right.
-    std::fs::copy(sample, workspace.path("copy")).expect("a copy");
-    assert!(grade("copy").out().contains("the grader's own program"), "{}", grade("copy").shown());
-    let made = workspace.run(["demo", "--sample", sample, "--mistake", "pe-square-no-eh", "--program", "flawed"]);
+    let made = workspace.run(["demo", "--mistake", "pe-square-no-eh", "--program", "flawed"]);
     assert_eq!(made.code, Some(0), "{}", made.shown());
-    let graded = grade("flawed");
+    let graded = workspace.run(["grade", "flawed", "--suite", "suite.toml", "--format", "csv"]);
     assert_eq!(graded.code, Some(1), "{}", graded.shown());
     assert!(graded.out().contains(",WA,") && graded.out().contains(",pe-square-no-eh"), "{}", graded.shown());
     // Neither another name nor another wish makes it right.
     let told = Command::new(workspace.path("flawed")).args(["--mistake", "no-such", "-s", "none.xml"]).output();
     let told = String::from_utf8(told.expect("the program").stderr).expect("text");
     assert!(told.contains("none.xml"), "{told}");
-    let unknown = workspace.run(["demo", "--sample", sample, "--mistake", "no-such", "--program", "other"]);
-    assert_eq!(unknown.code, Some(2), "{}", unknown.shown());
-    let other = workspace.run(["demo", "--sample", "/bin/sh", "--program", "other"]);
-    assert!(other.code == Some(2) && other.err().contains("is not this version's sample"), "{}", other.shown());
+    // A variant is right, too.
+    for mistake in ["no-such", "right", "", "pe-square-no-eh,scale-2"] {
+        let refused = workspace.run(["demo", "--mistake", mistake, "--program", "other"]);
+        assert!(refused.code == Some(2) && refused.err().contains("there is no mistake"), "{}", refused.shown());
+    }
+}
+
+/// The program itself can play a right submission, so it must not be one.
+#[test]
+fn the_program_itself_earns_no_points() {
+    let Some(workspace) = workspace() else { return };
+    let oracle = env!("CARGO_BIN_EXE_fosssim-oracle");
+    let changed = [fs::read(oracle).expect("the program"), b"x".to_vec()].concat();
+    for name in ["copy/FOSSSim", "changed/FOSSSim", "named/fosssim-sample", "drop-in/FOSSSimOracle"] {
+        workspace.write(name, if name.starts_with("copy") { &changed[..changed.len() - 1] } else { &changed });
+    }
+    for (name, line) in [
+        ("script/FOSSSim", format!("#!/bin/sh\nexec {oracle} sample \"$@\"\n")),
+        ("copier/FOSSSim", format!("#!/bin/sh\ncp {oracle} o && ./o sample \"$@\"\n")),
+        ("linker/FOSSSim", format!("#!/bin/sh\nln -s {oracle} fosssim-sample && ./fosssim-sample \"$@\"\n")),
+        ("interpreter/FOSSSim", format!("#!{oracle} sample\n")),
+        ("itself/FOSSSim", "#!/bin/sh\nexec /proc/$PPID/exe sample \"$@\"\n".to_owned()),
+    ] {
+        workspace.write(name, line);
+    }
+    for name in ["copy", "changed", "named", "drop-in", "script", "copier", "linker", "interpreter", "itself"] {
+        let folder =
+            fs::read_dir(workspace.path(name)).expect("a folder").next().expect("a program").expect("an entry");
+        fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).expect("a mode");
+        let program = folder.path().display().to_string();
+        let run = workspace.run(["grade", &program, "--suite", "suite.toml"]);
+        assert!(run.code == Some(1) && run.out().contains(", 0 of 20 points"), "{name}: {}", run.shown());
+    }
+    symlink(oracle, workspace.path("fosssim-sample")).expect("a link");
+    let linked = workspace.run(["grade", "fosssim-sample", "--suite", "suite.toml"]);
+    assert!(linked.out().contains("the grader's own program"), "{}", linked.shown());
 }
 
 #[test]

@@ -15,7 +15,7 @@ fn class(workspace: &Workspace) {
     fs::create_dir_all(workspace.path("class")).expect("a folder");
     for (name, mistake) in MISTAKES {
         let program = format!("class/{name}");
-        let made = workspace.run(["demo", "--sample", sample, "--mistake", mistake, "--program", &program]);
+        let made = workspace.run(["demo", "--mistake", mistake, "--program", &program]);
         assert_eq!(made.code, Some(0), "{}", made.shown());
     }
     fs::copy(sample, workspace.path("class/eve")).expect("a copy");

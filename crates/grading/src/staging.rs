@@ -145,8 +145,13 @@ impl StagedProgram {
 pub(super) fn copied(file: File, path: &Path) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = LARGEST_FOLDER;
-    let why = match copied_as(path.file_name().unwrap_or_else(|| "program".as_ref()), file, path, &mut room) {
-        Ok(staged) if !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) => {
+    let name = path.file_name().unwrap_or_else(|| "program".as_ref());
+    // Under this name a changed copy of the grader, too, would write right traces.
+    let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
+    let why = match copied_as(name, file, path, &mut room) {
+        Ok(staged)
+            if !is_oracle && !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
+        {
             return Ok(staged);
         }
         Ok(_) => UnusableReason::CouldNotStart(StartProblem::GradersOwn),

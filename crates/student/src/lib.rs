@@ -1,7 +1,7 @@
 //! A second simulator, which can make mistakes: it stands for a student's submission.
 //!
 //! It is written independently of [`fosssim_model::sim`], and by request makes one of the documented mistakes of the
-//! [`CATALOGUE`], which also holds correct variants. The sample program `fosssim-sample` is this simulator with
+//! [`CATALOGUE`], which also holds correct variants. The sample program is this simulator with
 //! arguments and a file; `diagnose` asks it which mistake reproduces a submission. It is **never used for judging**:
 //! verdicts come from [`fosssim_model::sim`] alone. It touches no file and no process, and prints nothing; what hostile
 //! programs do besides simulating belongs to the sample program.

@@ -251,10 +251,7 @@ Example:
   fosssim-oracle demo
   fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
 pub(in crate::cli) struct DemoArguments {
-    /// The sample program; by default fosssim-sample next to this program.
-    #[arg(long, value_name = "PROGRAM")]
-    pub(in crate::cli) sample: Option<PathBuf>,
-    /// The mistake of the wrong sample, or several, separated by commas; fosssim-sample --list lists them.
+    /// The mistake of the wrong sample, or several, separated by commas; `fosssim-oracle sample --list` lists them.
     #[arg(long, value_name = "ID")]
     pub(in crate::cli) mistake: Option<String>,
     /// Where to write the HTML report on the wrong sample.

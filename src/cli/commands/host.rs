@@ -8,10 +8,10 @@ use crate::{
         output,
     },
     files::{self, Place},
-    pin,
     report::{formats::Format, number::counted, page::Audience},
+    sample::pin,
     sandbox::{self, Backend, Supervisor, selftest},
-    student,
+    student::{self, RowKind},
     suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, plan},
 };
 use anyhow::{Context, Result, bail};
@@ -23,7 +23,7 @@ use std::{
     path::Path,
 };
 
-/// A sample program of more bytes is none of ours.
+/// More bytes than this program ever has.
 const LARGEST_PROGRAM: u64 = 1 << 30;
 
 /// The default mistake of the demo's wrong sample.
@@ -58,20 +58,21 @@ pub(super) fn doctor() -> Result<u8> {
 }
 
 pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
-    let sample = match &arguments.sample {
-        Some(sample) => sample.clone(),
-        None => std::env::current_exe().context("where is this program?")?.with_file_name("fosssim-sample"),
-    };
-    if !sample.is_file() {
-        bail!(
-            "no sample program at {}: build it with `cargo build --release`, or name it with --sample",
-            sample.display()
-        );
-    }
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
-    if let Some(program) = &arguments.program {
-        return write_flawed(&sample, mistake, program);
+    for id in mistake.split(',') {
+        // A variant is right: a program that makes it would be a right submission.
+        if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
+            bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them");
+        }
     }
+    if let Some(program) = &arguments.program {
+        write_sample(mistake, program)?;
+        let words =
+            format!("A program that makes the mistake {}: {}\n", mistake.replace(',', " and "), program.display());
+        console::print(&words)?;
+        return Ok(exit::ACCEPTED);
+    }
+    let folder = tempfile::Builder::new().prefix("fosssim-demo-").tempdir().context("no temporary folder")?;
     let plan = plan::load(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
     let backend = backend(false)?;
     let cancellation = cancelled_by_signals();
@@ -81,15 +82,11 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         pages::draw(&JudgedTrace { name: &format!("asset:{}", judged.name), ..*judged }, false)
     };
     let (mut verdicts, mut last) = (Vec::new(), None);
-    for (name, run) in [
-        ("right sample".to_owned(), plan.run.clone()),
-        (
-            format!("sample with mistake {mistake}"),
-            [&plan.run[..], &["--mistake".to_owned(), mistake.to_owned()]].concat(),
-        ),
-    ] {
-        let plan = plan::Plan { run, ..plan.clone() };
-        let submission = Submission { name, path: sample.clone(), program: None, file: None };
+    for (name, pinned) in [("right sample".to_owned(), pin::RIGHT), (format!("sample with mistake {mistake}"), mistake)]
+    {
+        let path = folder.path().join("FOSSSim");
+        write_sample(pinned, &path)?;
+        let submission = Submission { name, path, program: None, file: None };
         let grader = Grader {
             plan: &plan,
             backend: &backend,
@@ -126,20 +123,13 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     }
 }
 
-/// Writes the sample with a mistake that it always makes.
-fn write_flawed(sample: &Path, mistake: &str, program: &Path) -> Result<u8> {
-    if let Some(unknown) = mistake.split(',').find(|id| student::find(id).is_none()) {
-        bail!("there is no mistake '{unknown}'; fosssim-sample --list lists them");
-    }
-    let bytes = files::read(sample, LARGEST_PROGRAM).with_context(|| format!("cannot read {}", sample.display()))?;
-    let flawed =
-        pin::write(&bytes, mistake).with_context(|| format!("{} is not this version's sample", sample.display()))?;
-    output::write(program, &flawed)?;
+/// Writes the sample as a program of its own, with a mistake that it always makes.
+fn write_sample(mistake: &str, program: &Path) -> Result<()> {
+    let this = Path::new("/proc/self/exe").canonicalize().context("where is this program?")?;
+    let bytes = files::read(&this, LARGEST_PROGRAM).with_context(|| format!("cannot read {}", this.display()))?;
+    output::write(program, &pin::write(&bytes, mistake).context("the mistakes are too many for a program")?)?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
-        .with_context(|| format!("cannot make {} executable", program.display()))?;
-    let words = format!("A program that makes the mistake {}: {}\n", mistake.replace(',', " and "), program.display());
-    console::print(&words)?;
-    Ok(exit::ACCEPTED)
+        .with_context(|| format!("cannot make {} executable", program.display()))
 }
 
 pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {

@@ -5,14 +5,13 @@ use std::{
     io::{self, BufWriter, Write},
 };
 
-use anyhow::Context;
-use fosssim_oracle::student::{self, StepLog, Student, World};
-
-use crate::{
+use super::{
     arguments::Options,
     hostile::{self, MidwayAct},
     trace::Trace,
 };
+use crate::student::{self, StepLog, Student, World};
+use anyhow::Context;
 
 /// The status of a run that the course's program would never have ended.
 const NEVER_ENDS: u8 = 3;
@@ -29,9 +28,7 @@ pub fn run(options: &Options, student: Student) -> anyhow::Result<u8> {
     }
     let scene = options.scene.as_deref().context("-s is missing: name a scene file")?;
     let text = std::fs::read(scene).with_context(|| format!("{}: can't be read", scene.display()))?;
-    let scene = fosssim_oracle::scene::original::read(&text)
-        .with_context(|| format!("{}: not a scene", scene.display()))?
-        .scene;
+    let scene = crate::scene::original::read(&text).with_context(|| format!("{}: not a scene", scene.display()))?.scene;
     let world = World::new(scene, student);
     let output: Box<dyn Write> = match &options.output {
         Some(path) => Box::new(BufWriter::new(

@@ -2,12 +2,12 @@
 //! will do (trace-format.md).
 use std::io::{self, Write};
 
-use fosssim_oracle::{
+use crate::{
     scene::Collision,
     student::{Area, Mistake, Record, State, StepLog, Student},
 };
 
-use crate::hostile;
+use super::hostile;
 
 /// Writes the records of one run.
 pub struct Trace<W> {

@@ -1,7 +1,7 @@
 //! The catalogue as a table or as JSON.
 use std::io::{self, Write};
 
-use fosssim_oracle::student::{Area, Row, RowKind, all_rows};
+use crate::student::{Area, Row, RowKind, all_rows};
 use serde::Serialize;
 
 #[derive(Serialize)]

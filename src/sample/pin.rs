@@ -1,9 +1,11 @@
-//! A mistake that is pinned to a copy of the sample program: whatever the copy is called and however it is started, it
-//! makes this mistake. So there is a wrong program that can be handed in like a student's: the sample itself, which is
-//! right by default, is refused as a submission.
+//! A mistake that is pinned to a copy of this program: whatever the copy is called and however it is started, it is the
+//! sample, and makes this mistake. So there is a wrong program that can be handed in like a student's.
 //!
-//! The sample has a place for the mistake's id; the copy has it written there. Nothing has to be read when it runs,
+//! The program has a place for the mistake's id; the copy has it written there. Nothing has to be read when it runs,
 //! which the sandbox might not allow.
+
+/// Pinned to a copy that makes no mistake. Only the demo makes one, and removes it.
+pub const RIGHT: &str = "right";
 
 /// How many bytes of the place hold the id, or several with commas between them; what follows is zero.
 const ROOM: usize = 256;
@@ -12,12 +14,19 @@ const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The whole place.
 const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;
 
-/// The place in the sample.
-pub type Place = [u8; LENGTH];
+/// The place in the program.
+type Place = [u8; LENGTH];
+
+static PINNED: Place = empty();
+
+/// Returns the mistake that is pinned to this program, if one is.
+#[must_use]
+pub fn pinned() -> Option<&'static str> {
+    read(&PINNED)
+}
 
 /// Returns a place without a mistake.
-#[must_use]
-pub const fn empty() -> Place {
+const fn empty() -> Place {
     let mut place = [0; LENGTH];
     let mut at = 0;
     while at < MARK_BACKWARDS.len() {
@@ -28,22 +37,21 @@ pub const fn empty() -> Place {
 }
 
 /// Reads the mistake in a place, if there is one.
-#[must_use]
-pub fn read(place: &Place) -> Option<&str> {
+fn read(place: &Place) -> Option<&str> {
     // The compiler must not know what stands there: somebody writes over it later.
     let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
     let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
     std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
 }
 
-/// Writes a mistake's id into a copy of the sample; nothing when it has no place of its own for it, or the id no room.
+/// Writes a mistake's id into a copy of this program; nothing when it has no place of its own for it, or the id no room.
 #[must_use]
-pub fn write(sample: &[u8], id: &str) -> Option<Vec<u8>> {
+pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = MARK_BACKWARDS;
     mark.reverse();
-    let mut found = sample.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
+    let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
     let (Some(at), None) = (found.next(), found.next()) else { return None };
-    let mut copy = sample.to_vec();
+    let mut copy = program.to_vec();
     let room = copy.get_mut(at + mark.len()..at + LENGTH)?;
     // One byte stays zero: the id's end.
     if id.is_empty() || id.len() >= room.len() {

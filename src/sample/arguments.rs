@@ -1,17 +1,14 @@
 //! The command line: that of the course's program, and what is our own.
-use std::path::{Path, PathBuf};
-
+use super::pin;
+use crate::student::{self, Mistake, Student, all_rows};
 use clap::Parser;
-use fosssim_oracle::{
-    pin,
-    student::{self, Mistake, Student, all_rows},
+use std::{
+    ffi::OsString,
+    path::{Path, PathBuf},
 };
 
 /// The environment variable that names a mistake.
 const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
-
-/// The place where a mistake is pinned to a copy of this program: nothing else is asked then.
-static PINNED: pin::Place = pin::empty();
 
 /// A copy or link of the program with this prefix makes the mistake that follows it.
 const NAME_PREFIX: &str = "fosssim-sample.";
@@ -61,18 +58,22 @@ impl Options {
     ///
     /// # Errors
     /// A sentence about a mistake that does not exist.
-    pub fn student(&self) -> Result<Student, String> {
-        student(self.mistake.clone())
+    pub fn student(&self, pinned: Option<&str>, program: Option<&OsString>) -> Result<Student, String> {
+        student(pinned, self.mistake.clone(), program.map(Path::new))
     }
 }
 
-/// Returns the student with the mistakes that the command line, the program's name or the environment asks for.
-fn student(option: Option<String>) -> Result<Student, String> {
-    let (source, ids) = if let Some(id) = pin::read(&PINNED) {
+/// Returns the student with the mistakes that are pinned to the program, or else those that the command line, the
+/// program's name or the environment asks for.
+fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>) -> Result<Student, String> {
+    let (source, ids) = if let Some(id) = pinned {
+        if id == pin::RIGHT {
+            return Ok(Student::default());
+        }
         ("this copy of the program", id.to_owned())
     } else if let Some(ids) = option {
         ("--mistake", ids)
-    } else if let Some(ids) = mistake_of_name(std::env::args_os().next().as_deref().map(Path::new)) {
+    } else if let Some(ids) = mistake_of_name(program) {
         ("the program's name", ids)
     } else if let Some(ids) = std::env::var(VARIABLE).ok().filter(|ids| !ids.is_empty()) {
         (VARIABLE, ids)
@@ -126,17 +127,17 @@ mod tests {
 
     #[test]
     fn a_misspelt_mistake_is_named_with_what_comes_close() {
-        let message = student(Some("no-two".to_owned())).unwrap_err();
+        let message = student(None, Some("no-two".to_owned()), None).unwrap_err();
         assert!(message.contains("'no-two'") && message.contains("pp-no-two"), "{message}");
     }
 
     #[test]
     fn several_mistakes_are_made_at_once() {
-        let several = student(Some("pp-no-two,pe-empty,geometric-empty".to_owned())).expect("they exist");
+        let several = student(None, Some("pp-no-two,pe-empty,geometric-empty".to_owned()), None).expect("they exist");
         for id in ["pp-no-two", "pe-empty", "geometric-empty"] {
             assert!(student::find(id).is_some_and(|row| several.makes(row.mistake)), "{id}");
         }
-        let message = student(Some(["pp-empty"; MOST + 1].join(","))).unwrap_err();
+        let message = student(None, Some(["pp-empty"; MOST + 1].join(",")), None).unwrap_err();
         assert!(message.contains(&format!("at most {MOST}")), "{message}");
     }
 }

@@ -10,7 +10,7 @@ use std::{
     time::Duration,
 };
 
-use fosssim_oracle::student::{Area, Mistake, Student};
+use crate::student::{Area, Mistake, Student};
 
 /// The bytes of a flood behind the trace, and of one on standard output or error.
 const FLOOD_BYTES: usize = 256 << 20;

@@ -1,0 +1,44 @@
+//! The sample: stands for a student's submission.
+//!
+//! It speaks the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. Its physics is
+//! the second simulator, `student`; it never uses the one that judges, `sim`. `fosssim-oracle sample` runs it, and a
+//! copy of the program with a [pinned](pin) mistake is nothing else.
+#![expect(
+    clippy::disallowed_methods,
+    clippy::disallowed_types,
+    reason = "the walls are those of the library; a student's program opens files and calls what it likes"
+)]
+
+mod arguments;
+mod hostile;
+mod listing;
+pub mod pin;
+mod run;
+mod trace;
+
+use arguments::Options;
+use clap::Parser;
+use std::{ffi::OsString, process::ExitCode};
+
+/// Runs the sample with the words of a command line, the program's name first, and with what is pinned to it.
+#[must_use]
+pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
+    let words: Vec<OsString> = words.collect();
+    // A fault of syntax ends the program with status 2.
+    let options = Options::parse_from(&words);
+    let outcome = match options.student(pinned, words.first()) {
+        _ if options.list => listing::print(options.json),
+        Ok(student) => run::run(&options, student),
+        Err(message) => {
+            eprintln!("error: {message}");
+            return ExitCode::from(2);
+        }
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+    }
+}
