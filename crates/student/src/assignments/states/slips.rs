@@ -1,163 +1,104 @@
 //! Slips, the small changes with which quantities of a program go wrong: the same few everywhere.
-/// A small change of a quantity. A row of the catalogue is one of them at one [quantity](super::Term).
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Slip {
-    /// The quantity is missing; where it is a whole function, that is the starter code.
-    Missing,
-    /// The quantity has the other sign.
-    Sign,
-    /// The quantity replaces a sum to which it should be added.
-    Assigned,
-    /// Twice of it.
-    Doubled,
-    /// Half of it.
-    Halved,
-    /// The quantity's modulus.
-    Absolute,
-    /// The quantity's square.
-    Squared,
-    /// Half of its square, as an energy has it.
-    SquaredHalf,
-    /// The quantity's square with its own sign.
-    SquaredAway,
+/// The table: each slip with the words of a sentence about it, behind the quantity's name.
+macro_rules! slips {
+    ($($(#[$about:meta])* $slip:ident$(($by:ty))? $words:literal;)*) => {
+        /// A small change of a quantity. A row of the catalogue is one of them at one [quantity](super::Term).
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+        pub enum Slip { $(#[doc = $words] $(#[$about])* $slip$(($by))?,)* }
+
+        impl Slip {
+            /// Returns the words that fit any quantity.
+            pub(super) const fn describe(self) -> &'static str {
+                match self { $(Self::$slip { .. } => $words,)* }
+            }
+        }
+    };
+}
+
+slips! {
+    Missing "is missing";
+    Sign "has the wrong sign";
+    Assigned "replaces the sum so far instead of being added to it";
+    Doubled "is twice what it should be";
+    Halved "is half of what it should be";
+    Absolute "loses its sign by an absolute value";
+    Squared "grows with the square of the stretch or depth, whatever its sign";
+    SquaredHalf "is half of a square, as it is in the energy";
+    SquaredAway "grows with the square of the depth";
     /// Multiplied by this power of the mass.
-    Mass(i8),
+    Mass(i8) "has another factor";
     /// Multiplied by this power of the step size.
-    Step(i8),
+    Step(i8) "has another factor";
     /// Multiplied by this power of the distance.
-    Length(i8),
-    /// Multiplied by the mass of the pair's first body.
-    FirstMass,
-    /// The mass of particle 0 instead of that of each.
-    MassOfFirst,
-    /// The second component is lost.
-    XOnly,
-    /// The first component is lost.
-    YOnly,
-    /// The components change places.
-    Exchanged,
-    /// The first component stands for both.
-    XForBoth,
-    /// The second component stands for both.
-    YForBoth,
-    /// Only the first body of a pair gets it, or counts.
-    FirstOnly,
-    /// Only the other bodies of a pair get it, or count.
-    SecondOnly,
-    /// Both bodies get the same, not opposites.
-    SameSign,
-    /// Particle 0 does not get it.
-    FirstOut,
-    /// The last particle does not get it.
-    LastOut,
-    /// Only particle 0 gets it.
-    OnlyFirst,
-    /// Fixed particles are treated as free ones.
-    FixedForgotten,
-    /// Fixed particles do not move.
-    FixedStand,
-    /// Fixed particles lose their velocity, and stand.
-    FixedStopped,
-    /// Fixed particles move once more, and lose their velocity then.
-    FixedHalted,
-    /// Forces at the positions to which the step has moved already.
-    Behind,
-    /// Forces are added to those of the steps before.
-    NotCleared,
-    /// The derivatives have the other sign in the matrix.
-    MatrixSign,
-    /// The rows and columns of fixed particles stay in the matrix.
-    RowsOfFixed,
-    /// Only the diagonal of the rows and columns of fixed particles is set.
-    DiagonalOfFixed,
-    /// The right-hand side has entries for fixed particles.
-    RightOfFixed,
+    Length(i8) "has another factor";
+    FirstMass "is multiplied by the mass of the first of its two bodies";
+    MassOfFirst "has the mass of the first particle for all";
+    XOnly "loses its vertical component";
+    YOnly "loses its horizontal component";
+    Exchanged "has its two components exchanged";
+    XForBoth "has the horizontal component in both places";
+    YForBoth "has the vertical component in both places";
+    FirstOnly "acts on the first of its bodies only";
+    SecondOnly "does not act on the first of its bodies";
+    SameSign "has the same direction for both bodies instead of opposite ones";
+    FirstOut "leaves the first particle out";
+    LastOut "leaves the last particle out";
+    OnlyFirst "reaches the first particle only";
+    FixedForgotten "treats fixed particles as free ones";
+    FixedStand "leaves fixed particles where they are, even those with a velocity";
+    FixedStopped "sets the velocity of fixed particles to zero, so that they stand still";
+    FixedHalted "sets the velocity of fixed particles to zero once they have moved";
+    Behind "has the forces after the positions have moved instead of those before";
+    NotCleared "has the forces of all earlier steps in it: their sum is not cleared";
+    MatrixSign "has the derivatives with the wrong sign in its matrix";
+    RowsOfFixed "leaves the rows and columns of fixed particles in its matrix";
+    DiagonalOfFixed "sets the diagonal for fixed particles, but does not clear their rows and columns";
+    RightOfFixed "leaves the entries of fixed particles in its right-hand side";
     /// Newton's method ends after this many iterations.
-    Iterations(u8),
+    Iterations(u8) "ends after a fixed number of iterations";
     /// Newton's method ends at a change below ten to minus this.
-    Loose(i8),
-    /// The old velocity instead of the new one, or the reverse.
-    OtherVelocity,
-    /// The mean of old and new velocity.
-    MeanVelocity,
-    /// A matrix has only the blocks on the diagonal.
-    DiagonalOnly,
-    /// A matrix has the blocks off the diagonal with the other sign.
-    OffDiagonalSign,
-    /// A matrix lacks one of the blocks off the diagonal.
-    OneHalf,
-    /// A matrix is added to the one by velocities instead of the one by positions, or the reverse.
-    OtherMatrix,
-    /// Equality counts, too.
-    NotStrict,
-    /// The radius of an edge's first end instead of the edge's.
-    EndRadius,
-    /// The closest point of an edge is not limited to it.
-    Unclamped,
-    /// The closest point is measured from the other end.
-    Mirrored,
-    /// The closest point has the other sign before it is limited to the edge.
-    Negated,
-    /// The middle of an edge instead of its closest point.
-    Middle,
-    /// Points beyond the ends of an edge count as no contact.
-    EndsOut,
-    /// The point by which a half-plane is given instead of its closest one.
-    ToPoint,
-    /// The normal of a half-plane as it is given: not divided by its length.
-    Undivided,
-    /// The direction is that of the half-plane's normal, on both of its sides.
-    OneSided,
-    /// The normal, with the length of the normal.
-    OneSidedLong,
-    /// The direction is the opposite of the half-plane's normal, on both of its sides.
-    OneSidedBack,
-    /// The vector has length one.
-    Unit,
-    /// A factor of the formula is left out: stiffness, or restitution taken as one.
-    NoFactor,
-    /// The coefficient of restitution taken as zero.
-    Inelastic,
-    /// The coefficient of restitution without the one.
-    RestitutionOnly,
-    /// The radii are left out.
-    NoRadii,
-    /// The radius of the body that is not the pair's first is left out.
-    NoOtherRadius,
-    /// The layer's thickness is left out.
-    NoThickness,
-    /// The layer's thickness is in the test only.
-    ThicknessInTest,
-    /// The layer's thickness is in the depth only.
-    ThicknessInDepth,
-    /// The test whether bodies are near is missing.
-    Always,
-    /// All masses are the same.
-    EqualMasses,
-    /// The masses change places.
-    SwappedMasses,
-    /// Fixed bodies count with their masses, but stay.
-    FixedFinite,
-    /// Fixed bodies count with their masses, and are pushed.
-    FixedAsFree,
-    /// Fixed bodies are left out where they are not to be.
-    FixedSpared,
-    /// Each body sees the velocity that the one before it has got.
-    Sequential,
-    /// Velocities are those before the pass.
-    StartVelocity,
-    /// All of the velocity is changed, not its part along the normal.
-    Whole,
-    /// Shares of an edge's ends are not squared.
-    Unsquared,
-    /// Both ends of an edge get all.
-    FullShares,
-    /// The shares of an edge's ends change places.
-    SharesExchanged,
-    /// Both ends of an edge get half.
-    EqualShares,
-    /// The second end of an edge is forgotten.
-    OneEnd,
+    Loose(i8) "ends too early, at a larger change than the assignment asks for";
+    OtherVelocity "has the old velocity instead of the new one";
+    MeanVelocity "has the mean of the old and the new velocity";
+    DiagonalOnly "lacks the blocks off the diagonal";
+    OffDiagonalSign "has the wrong sign off the diagonal";
+    OneHalf "lacks one of its two blocks off the diagonal";
+    OtherMatrix "is added to the wrong one of the two matrices";
+    NotStrict "counts equality, too";
+    EndRadius "has the radius of the edge's first end instead of the edge's own";
+    Unclamped "takes the closest point from the whole line, beyond the ends of the edge, too";
+    Mirrored "measures from the wrong end of the edge";
+    Negated "looks for the closest point of an edge in the wrong direction from its first end";
+    Middle "has the middle of the edge instead of its closest point";
+    EndsOut "finds nothing beyond the ends of an edge";
+    ToPoint "goes to the point that defines the half-plane instead of its closest point";
+    Undivided "has the half-plane's normal with its own length instead of a unit vector";
+    OneSided "has the direction of the half-plane's normal, on both of its sides";
+    OneSidedLong "is along the half-plane's normal as it is given, on both of its sides";
+    OneSidedBack "has the opposite direction of the half-plane's normal, on both of its sides";
+    Unit "is normalized, although its length must be the distance";
+    NoFactor "takes the coefficient of restitution as one";
+    Inelastic "takes the coefficient of restitution as zero";
+    RestitutionOnly "has the coefficient of restitution alone, without one added to it";
+    NoRadii "ignores the radii";
+    NoOtherRadius "ignores the radius of the other body";
+    NoThickness "ignores the thickness of the layer";
+    ThicknessInTest "has the thickness of the layer in its test, but not in the depth";
+    ThicknessInDepth "has the thickness of the layer in the depth, but not in its test";
+    Always "also acts on bodies that are apart";
+    EqualMasses "ignores the masses";
+    SwappedMasses "has the masses exchanged";
+    FixedFinite "counts a fixed particle with its mass instead of as infinitely heavy";
+    FixedAsFree "treats fixed particles as free ones, with their mass";
+    FixedSpared "leaves fixed particles as they are, which the assignment does not ask for here";
+    Sequential "computes later changes with velocities that it has changed before";
+    StartVelocity "has the velocities before the pass instead of those that earlier pairs left";
+    Whole "changes the whole velocity instead of its part along the normal";
+    Unsquared "does not square the shares of the ends where masses are weighed";
+    FullShares "acts on each end of the edge as if it were the only one";
+    SharesExchanged "exchanges the shares of the edge's ends";
+    EqualShares "is shared equally between the ends of the edge";
+    OneEnd "forgets the second end of the edge";
 }
 
 /// The slips of everything that is added to a sum.
