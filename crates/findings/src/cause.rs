@@ -3,46 +3,60 @@
 //! The original's rules are written in oracle-behavior.md 4 to 6, and why they can't be trusted in numerics.md 1.
 use serde::{Deserialize, Serialize};
 
-/// The rule of the original that makes the verdicts differ; the original's failures come first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Cause {
-    /// Parity fails: coefficients are compared at an absolute bound, whatever their size.
-    AbsoluteCoefficients,
-    /// Parity fails: small leading coefficients are dropped before degrees are compared.
-    DroppedCoefficients,
-    /// Parity fails: a polynomial of round-off is compared with one that vanishes.
-    VanishingPolynomial,
-    /// Parity fails: the course's slip in the approach polynomial.
-    ApproachForm,
-    /// Parity fails: states are compared at an absolute bound, whatever the size of the scene.
-    AbsoluteStates,
-    /// Parity fails: contact normals are compared at an absolute bound.
-    AbsoluteNormals,
-    /// Parity fails: round-off of all steps is added up.
-    AccumulatedResiduals,
-    /// Parity fails: a decision that round-off may flip.
-    BorderlineDecision,
-    /// Parity passes: it takes over the first record.
-    FirstRecord,
-    /// Parity passes: it takes over mid records.
-    MidRecord,
-    /// Parity passes: it does not compare times of impact.
-    ContactTime,
-    /// Parity passes: a collision that is logged twice counts once.
-    RepeatedCollision,
-    /// Parity passes: it decides with its own polynomials, not with the trace's.
-    OwnPolynomials,
-    /// Parity passes: it does not ask whether the course's library can have written a polynomial.
-    ImpossibleLog,
-    /// Parity passes: values that are not numbers pass.
-    NotANumber,
-    /// Parity passes: what is below an absolute bound passes, however wrong.
-    SmallErrors,
-    /// Parity passes: it does not look behind the last record.
-    TrailingBytes,
-    /// Parity passes: it reads on over damage.
-    Damage,
+fosssim_num::closed_set! {
+    /// The rule of the original that makes the verdicts differ; the original's failures come first.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Cause {
+        /// Parity fails: coefficients are compared at an absolute bound, whatever their size.
+        AbsoluteCoefficients =
+            "the original compares coefficients at an absolute 1e-10, after rescaling by sums of moduli: the \
+             round-off of large ones exceeds it",
+        /// Parity fails: small leading coefficients are dropped before degrees are compared.
+        DroppedCoefficients =
+            "the original compares degrees after leading coefficients below an absolute 1e-12 have been dropped: a \
+             factor or a rounding moves them across that bound",
+        /// Parity fails: a polynomial of round-off is compared with one that vanishes.
+        VanishingPolynomial =
+            "the original treats a polynomial below an absolute 1e-10 as zero, and its round-off elsewhere as wrong",
+        /// Parity fails: the course's slip in the approach polynomial.
+        ApproachForm =
+            "the original has the course's slip in t^3 of the approach polynomial of a particle and an edge, and \
+             the trace has the right form",
+        /// Parity fails: states are compared at an absolute bound, whatever the size of the scene.
+        AbsoluteStates = "the original compares states at an absolute 1e-10: the round-off of large numbers exceeds it",
+        /// Parity fails: contact normals are compared at an absolute bound.
+        AbsoluteNormals =
+            "the original compares contact normals at an absolute 1e-9: the round-off of long ones exceeds it",
+        /// Parity fails: round-off of all steps is added up.
+        AccumulatedResiduals =
+            "the original adds up the round-off of all steps and particles, and its bound of 1e-6 does not grow \
+             with them",
+        /// Parity fails: a decision that round-off may flip.
+        BorderlineDecision =
+            "the original knows one outcome of a decision that round-off may flip, and the trace has the other",
+        /// Parity passes: it takes over the first record.
+        FirstRecord = "the original never checks the first record against the scene",
+        /// Parity passes: it takes over mid records.
+        MidRecord = "the original never checks a step's mid record",
+        /// Parity passes: it does not compare times of impact.
+        ContactTime = "the original does not compare times of impact",
+        /// Parity passes: a collision that is logged twice counts once.
+        RepeatedCollision = "the original counts a collision that is logged several times as one",
+        /// Parity passes: it decides with its own polynomials, not with the trace's.
+        OwnPolynomials =
+            "the original decides with its own polynomials, so it does not see what follows from the trace's",
+        /// Parity passes: it does not ask whether the course's library can have written a polynomial.
+        ImpossibleLog = "the original does not check whether the course's library can have written the log",
+        /// Parity passes: values that are not numbers pass.
+        NotANumber = "the original accepts values that are not numbers",
+        /// Parity passes: what is below an absolute bound passes, however wrong.
+        SmallErrors = "the original compares at absolute bounds: what is below them passes, however wrong for its size",
+        /// Parity passes: it does not look behind the last record.
+        TrailingBytes = "the original does not check what follows the last record",
+        /// Parity passes: it reads on over damage.
+        Damage = "the original skips damage silently",
+    }
 }
 
 impl Cause {
@@ -56,50 +70,6 @@ impl Cause {
 /// One sentence without a full stop, about the original.
 impl std::fmt::Display for Cause {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.write_str(match self {
-            Self::AbsoluteCoefficients => {
-                "the original compares coefficients at an absolute 1e-10, after rescaling by sums of moduli: the \
-                 round-off of large ones exceeds it"
-            }
-            Self::DroppedCoefficients => {
-                "the original compares degrees after leading coefficients below an absolute 1e-12 have been dropped: a \
-                 factor or a rounding moves them across that bound"
-            }
-            Self::VanishingPolynomial => {
-                "the original treats a polynomial below an absolute 1e-10 as zero, and its round-off elsewhere \
-                 as wrong"
-            }
-            Self::ApproachForm => {
-                "the original has the course's slip in t^3 of the approach polynomial of a particle and an edge, and \
-                 the trace has the right form"
-            }
-            Self::AbsoluteStates => {
-                "the original compares states at an absolute 1e-10: the round-off of large numbers exceeds it"
-            }
-            Self::AbsoluteNormals => {
-                "the original compares contact normals at an absolute 1e-9: the round-off of long ones exceeds it"
-            }
-            Self::AccumulatedResiduals => {
-                "the original adds up the round-off of all steps and particles, and its bound of 1e-6 does not \
-                 grow with them"
-            }
-            Self::BorderlineDecision => {
-                "the original knows one outcome of a decision that round-off may flip, and the trace has the other"
-            }
-            Self::FirstRecord => "the original never checks the first record against the scene",
-            Self::MidRecord => "the original never checks a step's mid record",
-            Self::ContactTime => "the original does not compare times of impact",
-            Self::RepeatedCollision => "the original counts a collision that is logged several times as one",
-            Self::OwnPolynomials => {
-                "the original decides with its own polynomials, so it does not see what follows from the trace's"
-            }
-            Self::ImpossibleLog => "the original does not check whether the course's library can have written the log",
-            Self::NotANumber => "the original accepts values that are not numbers",
-            Self::SmallErrors => {
-                "the original compares at absolute bounds: what is below them passes, however wrong for its size"
-            }
-            Self::TrailingBytes => "the original does not check what follows the last record",
-            Self::Damage => "the original skips damage silently",
-        })
+        f.write_str(self.name())
     }
 }

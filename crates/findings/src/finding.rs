@@ -12,41 +12,41 @@ fosssim_num::closed_set! {
     #[serde(rename_all = "snake_case")]
     pub enum FindingKind {
         /// A collision of the reference is not in the trace.
-        MissedCollision,
+        MissedCollision = "missed collision",
         /// A collision of the trace is not in the reference.
-        SuperfluousCollision,
+        SuperfluousCollision = "superfluous collision",
         /// A collision is in both, with different contact normals.
-        WrongNormal,
+        WrongNormal = "wrong contact normal",
         /// The step logged another number of polynomials: detection ran more or less often.
-        PolynomialCount,
+        PolynomialCount = "wrong number of polynomials",
         /// A polynomial has another number of coefficients.
-        PolynomialDegree,
+        PolynomialDegree = "wrong polynomial degree",
         /// The reference's coefficients are all tiny, the trace's are not.
-        VanishingPolynomial,
+        VanishingPolynomial = "polynomial should vanish",
         /// A coefficient differs after rescaling.
-        Coefficient,
+        Coefficient = "wrong coefficient",
         /// A particle's position at the end of the step differs.
-        Position,
+        Position = "wrong position",
         /// A particle's velocity at the end of the step differs.
-        Velocity,
+        Velocity = "wrong velocity",
         /// Fair rules: the time of impact of a collision is wrong.
-        ContactTime,
+        ContactTime = "wrong time of impact",
         /// Fair rules: a collision is logged more than once.
-        RepeatedCollision,
+        RepeatedCollision = "repeated collision",
         /// Fair rules: a later detection pass of the step looked at wrong positions.
-        PassPositions,
+        PassPositions = "wrong positions within the step",
         /// Fair rules: the two records of a step contradict each other.
-        RecordsDiffer,
+        RecordsDiffer = "contradicting records",
         /// Fair rules: the trace holds what the course's library can't have written.
-        ImpossibleLog,
+        ImpossibleLog = "impossible log",
         /// Fair rules: coefficients that were lost as too small change a decision.
-        TrimmedDecision,
+        TrimmedDecision = "decision changed by lost coefficients",
         /// Fair rules: the two accepted forms of the approach polynomial are mixed.
-        MixedForms,
+        MixedForms = "mixed forms of the approach",
         /// Fair rules: the penalty force between two bodies was left out, or applied twice.
-        PairForce,
+        PairForce = "force of a pair left out or doubled",
         /// Fair rules: from the step's state, or with its polynomials, no next state exists.
-        NoResult,
+        NoResult = "no next state",
     }
 }
 
@@ -416,18 +416,20 @@ pub struct PolynomialPlace {
     pub index: usize,
 }
 
-/// The meaning of a detection polynomial that is positive (collisions.md 2).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Role {
-    /// The objects overlap (the distance is below the sum of radii).
-    Overlap,
-    /// The particle is beyond the edge's first endpoint (alpha > 0).
-    AlphaAboveZero,
-    /// The particle is before the edge's second endpoint (alpha < 1).
-    AlphaBelowOne,
-    /// The objects approach each other.
-    Approach,
+fosssim_num::closed_set! {
+    /// The meaning of a detection polynomial that is positive (collisions.md 2).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
+    #[serde(rename_all = "snake_case")]
+    pub enum Role {
+        /// The objects overlap (the distance is below the sum of radii).
+        Overlap = "overlap",
+        /// The particle is beyond the edge's first endpoint (alpha > 0).
+        AlphaAboveZero = "alpha > 0",
+        /// The particle is before the edge's second endpoint (alpha < 1).
+        AlphaBelowOne = "alpha < 1",
+        /// The objects approach each other.
+        Approach = "approach",
+    }
 }
 
 impl Role {

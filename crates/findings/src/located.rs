@@ -12,21 +12,23 @@ pub struct Content {
     pub value: Option<[Cow<'static, str>; 2]>,
 }
 
-/// How programs fail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FailureKind {
-    /// By a signal.
-    Crash,
-    /// By an exit code of their own.
-    Error,
-    /// By the limit of time.
-    Time,
-    /// By the limit of memory.
-    Memory,
-    /// By a limit of what they may write.
-    Output,
-    /// By several of these.
-    Several,
+fosssim_num::closed_set! {
+    /// How programs fail.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum FailureKind {
+        /// By a signal.
+        Crash = "crash",
+        /// By an exit code of their own.
+        Error = "end with an error code",
+        /// By the limit of time.
+        Time = "run out of time",
+        /// By the limit of memory.
+        Memory = "need more memory than allowed",
+        /// By a limit of what they may write.
+        Output = "write more than allowed",
+        /// By several of these.
+        Several = "crash or run into a limit",
+    }
 }
 
 /// The contents that the failing scenes have in common.

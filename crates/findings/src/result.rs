@@ -274,15 +274,17 @@ pub enum Failure {
     },
 }
 
-/// The grader's activities.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Activity {
-    /// Comparing the trace with the reference.
-    Judging,
-    /// Looking for the likely mistake.
-    Explaining,
-    /// Drawing what pages show of the trace.
-    Drawing,
+fosssim_num::closed_set! {
+    /// The grader's activities.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum Activity {
+        /// Comparing the trace with the reference.
+        Judging = "judging",
+        /// Looking for the likely mistake.
+        Explaining = "explaining",
+        /// Drawing what pages show of the trace.
+        Drawing = "drawing",
+    }
 }
 
 /// The place of a trace on which the grader failed.

@@ -6,58 +6,39 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum Verdict {
         /// Everything is right.
-        Accepted = "accepted",
+        Accepted = "accepted", "AC";
         /// The scene was not run, because the grading was cut short.
-        NotRun = "not run",
+        NotRun = "not run", "--";
         /// The trace is complete, and nothing is logged in it: what the assignment asks for is not written yet.
-        Unwritten = "nothing written",
+        Unwritten = "nothing written", "NW";
         /// The trace is complete and wrong.
-        WrongAnswer = "wrong answer",
+        WrongAnswer = "wrong answer", "WA";
         /// The trace can't be read to its end.
-        BadTrace = "bad trace",
+        BadTrace = "bad trace", "BT";
         /// No trace was written.
-        NoOutput = "no output",
+        NoOutput = "no output", "NO";
         /// The program wrote too much.
-        OutputLimit = "output limit",
+        OutputLimit = "output limit", "OLE";
         /// The program needed too much memory.
-        MemoryLimit = "memory limit",
+        MemoryLimit = "memory limit", "MLE";
         /// The program took too long.
-        TimeLimit = "time limit",
+        TimeLimit = "time limit", "TLE";
         /// The program crashed or ended with an error code.
-        RuntimeError = "run-time error",
+        RuntimeError = "run-time error", "RTE";
         /// The submission itself can't be run: no program is in it, or none that this machine can start.
-        Unusable = "unusable submission",
+        Unusable = "unusable submission", "US";
         /// The program's sources do not build.
-        CompileError = "compile error",
+        CompileError = "compile error", "CE";
         /// The program tried what the sandbox forbids.
-        Violation = "sandbox violation",
+        Violation = "sandbox violation", "SV";
         /// The grader failed. Never the student's fault, never the student's score.
-        JudgeError = "judge error",
+        JudgeError = "judge error", "JE";
     }
+    /// Returns the short code, for tables and spreadsheets.
+    code
 }
 
 impl Verdict {
-    /// Returns the short code, for tables and spreadsheets.
-    #[must_use]
-    pub const fn code(self) -> &'static str {
-        match self {
-            Self::Accepted => "AC",
-            Self::NotRun => "--",
-            Self::Unwritten => "NW",
-            Self::WrongAnswer => "WA",
-            Self::BadTrace => "BT",
-            Self::NoOutput => "NO",
-            Self::OutputLimit => "OLE",
-            Self::MemoryLimit => "MLE",
-            Self::TimeLimit => "TLE",
-            Self::RuntimeError => "RTE",
-            Self::Unusable => "US",
-            Self::CompileError => "CE",
-            Self::Violation => "SV",
-            Self::JudgeError => "JE",
-        }
-    }
-
     /// Returns the verdict of a code.
     #[must_use]
     pub fn from_code(code: &str) -> Option<Self> {

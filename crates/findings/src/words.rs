@@ -225,37 +225,13 @@ impl Display for PolynomialPlace {
 
 impl Display for Role {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Overlap => "overlap",
-            Self::AlphaAboveZero => "alpha > 0",
-            Self::AlphaBelowOne => "alpha < 1",
-            Self::Approach => "approach",
-        })
+        f.write_str(self.name())
     }
 }
 
 impl Display for FindingKind {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::MissedCollision => "missed collision",
-            Self::SuperfluousCollision => "superfluous collision",
-            Self::WrongNormal => "wrong contact normal",
-            Self::PolynomialCount => "wrong number of polynomials",
-            Self::PolynomialDegree => "wrong polynomial degree",
-            Self::VanishingPolynomial => "polynomial should vanish",
-            Self::Coefficient => "wrong coefficient",
-            Self::Position => "wrong position",
-            Self::Velocity => "wrong velocity",
-            Self::ContactTime => "wrong time of impact",
-            Self::RepeatedCollision => "repeated collision",
-            Self::PassPositions => "wrong positions within the step",
-            Self::RecordsDiffer => "contradicting records",
-            Self::ImpossibleLog => "impossible log",
-            Self::TrimmedDecision => "decision changed by lost coefficients",
-            Self::MixedForms => "mixed forms of the approach",
-            Self::PairForce => "force of a pair left out or doubled",
-            Self::NoResult => "no next state",
-        })
+        f.pad(self.name())
     }
 }
 

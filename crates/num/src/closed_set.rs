@@ -1,6 +1,7 @@
 //! Enums that are closed sets: one row for each variant, from which the list of all and their names follow.
 
-/// Declares an enum with `ALL`, its variants in their order, and, where each row has a name, the function `name`.
+/// Declares an enum with `ALL`, its variants in their order, and, where each row has a name, the function `name`. Rows
+/// may have one more text, whose function is named below them.
 ///
 /// ```
 /// fosssim_num::closed_set! {
@@ -34,6 +35,19 @@ macro_rules! closed_set {
             #[must_use]
             $vis const fn name(self) -> &'static str {
                 match self { $(Self::$variant => $name,)+ }
+            }
+        }
+    };
+    ($(#[$meta:meta])* $vis:vis enum $set:ident {
+        $($(#[$about:meta])* $variant:ident = $name:literal, $more:literal;)+
+    } $(#[$of_more:meta])* $second:ident) => {
+        $crate::closed_set! { $(#[$meta])* $vis enum $set { $($(#[$about])* $variant = $name,)+ } }
+
+        impl $set {
+            $(#[$of_more])*
+            #[must_use]
+            $vis const fn $second(self) -> &'static str {
+                match self { $(Self::$variant => $more,)+ }
             }
         }
     };

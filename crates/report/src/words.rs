@@ -11,8 +11,8 @@ use fosssim_findings::{
     FindingPlace, Grade, SubmissionFault, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding},
     result::{
-        Activity, BadTrace, BuildEnd, Failure, FolderContents, Limit, NotRunReason, ProgramProgress, Reason, RunEnd,
-        SavedTrace, SceneResult, UnusableReason, WrongTrace,
+        BadTrace, BuildEnd, Failure, FolderContents, Limit, NotRunReason, ProgramProgress, Reason, RunEnd, SavedTrace,
+        SceneResult, UnusableReason, WrongTrace,
     },
 };
 use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
@@ -235,11 +235,7 @@ fn describe_failure(failure: &Failure) -> String {
         Failure::Machine(words) => words.clone(),
         Failure::Panic { stage: None, fault, .. } => format!("the grader failed: {fault}; please report this"),
         Failure::Panic { stage: Some(stage), fault, .. } => {
-            let doing = match stage {
-                Activity::Judging => "judging",
-                Activity::Explaining => "explaining",
-                Activity::Drawing => "drawing",
-            };
+            let doing = stage.name();
             format!("the grader failed while {doing} this scene: {fault}")
         }
     }

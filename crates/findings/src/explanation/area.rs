@@ -1,46 +1,59 @@
 //! The parts of the assignment.
 use serde::{Deserialize, Serialize};
 
-/// The part of the assignment to which a mistake belongs. Listings have its name in JSON.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Area {
-    /// The forces that act on particles.
-    Forces,
-    /// Derivatives of forces by positions and velocities, for implicit integrators.
-    Jacobians,
-    /// How forces change velocities, and velocities positions.
-    Integrator,
-    /// The force between near bodies.
-    Penalty,
-    /// Which pairs reach the force between near bodies.
-    NearPairs,
-    /// Polynomials of two particles.
-    ParticleParticle,
-    /// Polynomials of a particle and an edge.
-    ParticleEdge,
-    /// Polynomials of a particle and a half-plane.
-    ParticleHalfPlane,
-    /// The common part of all three detections: how polynomials reach the root finder.
-    Handover,
-    /// The vector between the objects at the time of impact.
-    ContactVector,
-    /// Which times count, and which pairs are looked at.
-    Decision,
-    /// When bodies that overlap at the end of a step collide, and the vector between them.
-    SimpleDetection,
-    /// The impulse of one contact.
-    Response,
-    /// The single pass of `continuous-time`.
-    ContinuousTime,
-    /// The impulse rounds of `hybrid`.
-    ImpulseLoop,
-    /// Impact zones and their growth.
-    ImpactZones,
-    /// The rigid motion of one zone.
-    Failsafe,
-    /// The trace that is written.
-    Trace,
-    /// How the program behaves as a process.
-    Process,
+fosssim_num::closed_set! {
+    /// The part of the assignment to which a mistake belongs. Listings have its name in JSON.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Area {
+        /// The forces that act on particles.
+        Forces = "Forces", "Look at what each force adds to the gradient, for each of its particles.";
+        /// Derivatives of forces by positions and velocities, for implicit integrators.
+        Jacobians = "Derivatives of forces", "Look at what each force adds to the second derivatives, block by block.";
+        /// How forces change velocities, and velocities positions.
+        Integrator = "Integrator",
+            "Look at the order in which a step changes velocities and positions, and at what it reads.";
+        /// The force between near bodies.
+        Penalty = "Penalty force", "Look at what the penalty force adds to the gradient, for each kind of pair.";
+        /// Which pairs reach the force between near bodies.
+        NearPairs = "Search for near pairs", "Look at which pairs the search for near bodies finds, and how often.";
+        /// Polynomials of two particles.
+        ParticleParticle = "Particle-particle",
+            "Look at the coefficients that the particle-particle detection computes.";
+        /// Polynomials of a particle and an edge.
+        ParticleEdge = "Particle-edge", "Look at the coefficients that the particle-edge detection computes.";
+        /// Polynomials of a particle and a half-plane.
+        ParticleHalfPlane = "Particle-half-plane",
+            "Look at the coefficients that the particle-half-plane detection computes.";
+        /// The common part of all three detections: how polynomials reach the root finder.
+        Handover = "Hand-over to the root finder",
+            "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type.";
+        /// The vector between the objects at the time of impact.
+        ContactVector = "Contact vector", "Look at what the detection returns once the time of impact is known.";
+        /// Which times count, and which pairs are looked at.
+        Decision = "Detection",
+            "Look at which pairs are tested, and at what is done with the time that the root finder returns.";
+        /// When bodies that overlap at the end of a step collide, and the vector between them.
+        SimpleDetection = "Detection",
+            "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns.";
+        /// The impulse of one contact.
+        Response = "Collision response", "Look at how one contact changes velocities and positions.";
+        /// The single pass of `continuous-time`.
+        ContinuousTime = "Continuous-time pass",
+            "Look at the loop over the pairs in the single pass of continuous-time.";
+        /// The impulse rounds of `hybrid`.
+        ImpulseLoop = "Impulse loop",
+            "Look at the loop over the impulse rounds: its start, its end, and what it carries over.";
+        /// Impact zones and their growth.
+        ImpactZones = "Impact zones",
+            "Look at how impact zones are made, merged and compared, and when their loop ends.";
+        /// The rigid motion of one zone.
+        Failsafe = "Rigid failsafe", "Look at how one zone is moved as a rigid body, and when it stops instead.";
+        /// The trace that is written.
+        Trace = "Trace", "Look at what is written to the trace, and when; the simulation itself may be right.";
+        /// How the program behaves as a process.
+        Process = "Program", "Look at how the program starts and ends.";
+    }
+    /// Returns one sentence that says where in the program the mistake is made, without the right formula.
+    advice
 }

@@ -133,58 +133,71 @@ pub enum ChangeCause {
     JacobiansOrIntegrator,
 }
 
-/// The particles that change as they should not.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ChangedParticles {
-    /// Any.
-    Any,
-    /// Fixed ones only.
-    Fixed,
-    /// The first one only.
-    First,
-    /// The last one only.
-    Last,
+fosssim_num::closed_set! {
+    /// The particles that change as they should not.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum ChangedParticles {
+        /// Any.
+        Any = "",
+        /// Fixed ones only.
+        Fixed = " of fixed particles only",
+        /// The first one only.
+        First = " of the first particle only",
+        /// The last one only.
+        Last = " of the last particle only",
+    }
 }
 
-/// The one factor of all wrong changes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ChangeRatio {
-    /// There is no change.
-    Nothing,
-    /// The opposite change.
-    Opposite,
-    /// Another factor.
-    Factor,
-    /// The changes have no ratio in common.
-    Other,
+fosssim_num::closed_set! {
+    /// The one factor of all wrong changes.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum ChangeRatio {
+        /// There is no change.
+        Nothing = "stay as they were",
+        /// The opposite change.
+        Opposite = "change the opposite way",
+        /// Another factor.
+        Factor = "change by a wrong factor, which is always the same",
+        /// The changes have no ratio in common.
+        Other = "change wrongly",
+    }
 }
 
-/// Which decisions about contacts are wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongDecisions {
-    /// Contacts are missed.
-    Missed,
-    /// There are contacts that there should not be.
-    Superfluous,
-    /// Both.
-    Both,
+fosssim_num::closed_set! {
+    /// Which decisions about contacts are wrong.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongDecisions {
+        /// Contacts are missed.
+        Missed = "contacts that its polynomials show are not counted",
+            "collisions of bodies that overlap and approach each other are missed";
+        /// There are contacts that there should not be.
+        Superfluous = "contacts are counted that its polynomials do not show",
+            "collisions are found between bodies that do not overlap, or do not approach each other";
+        /// Both.
+        Both = "the polynomials are right, the decisions are not: contacts are missed, others are superfluous",
+            "some collisions are missed, and others are found where there are none";
+    }
+    /// Returns the sentence about bodies that overlap at the end of a step.
+    of_overlaps
 }
 
-/// A fault of contact vectors.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongVectors {
-    /// The vectors are perpendicular to the right ones.
-    Perpendicular,
-    /// The vectors have another direction.
-    Direction,
-    /// The vectors have no length.
-    Zero,
-    /// The vectors are right but for their last digits.
-    Inexact,
-    /// The vectors point the other way round.
-    Reversed,
-    /// The length is wrong.
-    Length,
+fosssim_num::closed_set! {
+    /// A fault of contact vectors.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongVectors {
+        /// The vectors are perpendicular to the right ones.
+        Perpendicular = "it is perpendicular to what it should be",
+        /// The vectors have another direction.
+        Direction = "it has the wrong direction",
+        /// The vectors have no length.
+        Zero = "it has no length",
+        /// The vectors are right but for their last digits.
+        Inexact = "it is right except for its last digits",
+        /// The vectors point the other way round.
+        Reversed = "it points the other way round",
+        /// The length is wrong.
+        Length = "it has the right direction, but not the right length",
+    }
 }
 
 /// A fault of the changes by isolated contacts.
@@ -221,15 +234,17 @@ pub enum Quantity {
     Velocity,
 }
 
-/// How a number of rounds is wrong.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongNumber {
-    /// Too few.
-    Fewer,
-    /// Too many.
-    More,
-    /// Sometimes this, sometimes that.
-    Other,
+fosssim_num::closed_set! {
+    /// How a number of rounds is wrong.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongNumber {
+        /// Too few.
+        Fewer = "the loop makes fewer rounds than it should",
+        /// Too many.
+        More = "the loop makes more rounds than it should",
+        /// Sometimes this, sometimes that.
+        Other = "the loop makes another number of rounds than it should",
+    }
 }
 
 /// Whether the geometric part follows where it should not, or does not where it should.
@@ -244,15 +259,18 @@ pub enum WrongGeometric {
     Superfluous,
 }
 
-/// At which positions the geometric part looks, wrongly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongPositions {
-    /// First of all at those of the integrator.
-    Prediction,
-    /// First of all at others than those that the impulse rounds leave.
-    First,
-    /// Behind the failsafe at those before it.
-    BeforeFailsafe,
+fosssim_num::closed_set! {
+    /// At which positions the geometric part looks, wrongly.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongPositions {
+        /// First of all at those of the integrator.
+        Prediction =
+            "the first zones are searched on the predicted positions, not on those that the impulse rounds leave",
+        /// First of all at others than those that the impulse rounds leave.
+        First = "the first zones are searched on other positions than those that the impulse rounds leave",
+        /// Behind the failsafe at those before it.
+        BeforeFailsafe = "the detection after the failsafe uses the positions before it",
+    }
 }
 
 /// The reason why impulse rounds end.
@@ -264,65 +282,71 @@ pub enum LoopEnd {
     Settled,
 }
 
-/// A fault of the rounds in which zones grow.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongZoneRounds {
-    /// The zones themselves.
-    Growth,
-    /// There are too few rounds.
-    Fewer,
-    /// There are too many.
-    More,
-    /// The zones, or the number of rounds.
-    Later,
+fosssim_num::closed_set! {
+    /// A fault of the rounds in which zones grow.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongZoneRounds {
+        /// The zones themselves.
+        Growth = "zones are right in the first round, but not as they grow",
+        /// There are too few rounds.
+        Fewer = "the zones make fewer rounds than they should",
+        /// There are too many.
+        More = "the zones make more rounds than they should",
+        /// The zones, or the number of rounds.
+        Later = "the zones are right at first, but not in later rounds, or there are not as many as there should be",
+    }
 }
 
-/// A fault of the choice of zones that are moved or stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongZones {
-    /// Some particles of a zone are not moved with it.
-    Partly,
-    /// Some particles of a zone that has to stop do not stop.
-    PartlyStopped,
-    /// Zones are not moved.
-    Unmoved,
-    /// Zones stop that should move.
-    Stop,
-    /// Contacts that share particles are moved one after the other.
-    NotMerged,
-    /// Zones that share no particle are moved as one.
-    Joined,
-    /// Particles are moved that belong to no zone.
-    Others,
-    /// Zones that have to stop move on as rigid bodies.
-    MoveOn,
-    /// Zones that have to stop do not go back.
-    KeepPositions,
-    /// Zones that have to stop keep some velocity.
-    KeepVelocities,
+fosssim_num::closed_set! {
+    /// A fault of the choice of zones that are moved or stopped.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongZones {
+        /// Some particles of a zone are not moved with it.
+        Partly = "some of a zone's particles are not moved with it",
+        /// Some particles of a zone that has to stop do not stop.
+        PartlyStopped = "in zones that must stop, some particles do not",
+        /// Zones are not moved.
+        Unmoved = "some zones that should move do not",
+        /// Zones stop that should move.
+        Stop = "zones stop although nothing in them is fixed",
+        /// Contacts that share particles are moved one after the other.
+        NotMerged = "zones that share particles are moved one after the other, not as one",
+        /// Zones that share no particle are moved as one.
+        Joined = "zones that share no particle are moved as one",
+        /// Particles are moved that belong to no zone.
+        Others = "zones move particles that are not theirs",
+        /// Zones that have to stop move on as rigid bodies.
+        MoveOn = "zones that must stop move on as rigid bodies",
+        /// Zones that have to stop do not go back.
+        KeepPositions = "zones that must stop do not go back to their start",
+        /// Zones that have to stop keep some velocity.
+        KeepVelocities = "zones that must stop do not lose their velocity",
+    }
 }
 
-/// A fault of the motion of zones.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum WrongMotion {
-    /// Where their center of mass goes.
-    Center,
-    /// The distances of their particles.
-    Distances,
-    /// The zones do not turn.
-    NoTurn,
-    /// The zones turn less than they should.
-    LessTurn,
-    /// The zones turn further.
-    MoreTurn,
-    /// The zones turn the other way.
-    TurnBack,
-    /// The zones turn by another angle.
-    Turn,
-    /// The zones' velocities are wrong.
-    Velocities,
-    /// The size of their velocities.
-    Speeds,
+fosssim_num::closed_set! {
+    /// A fault of the motion of zones.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum WrongMotion {
+        /// Where their center of mass goes.
+        Center = "the center of mass of a zone does not move as it should",
+        /// The distances of their particles.
+        Distances = "the particles of a zone do not keep their distances",
+        /// The zones do not turn.
+        NoTurn = "zones do not turn",
+        /// The zones turn less than they should.
+        LessTurn = "zones do not turn as far as they should",
+        /// The zones turn further.
+        MoreTurn = "zones turn further than they should",
+        /// The zones turn the other way.
+        TurnBack = "zones turn the other way round",
+        /// The zones turn by another angle.
+        Turn = "zones do not turn by the angle that they should",
+        /// The zones' velocities are wrong.
+        Velocities = "velocities in a zone are not those of its motion from start to end",
+        /// The size of their velocities.
+        Speeds = "velocities in a zone are not those of its motion from start to end, though along it",
+    }
 }
 
 impl StageFault {

@@ -40,11 +40,11 @@ impl Guess {
     #[must_use]
     pub fn key(&self) -> &str {
         match self {
-            Self::List(guess) => guess.key(),
+            Self::List(guess) => guess.name(),
             Self::Exchange(key) | Self::Special(key) => key,
             Self::Quantity(QuantityGuess::Other) => "letter",
             Self::Quantity(_) => "letter-factor",
-            Self::Coefficients { wrong, .. } => wrong.key(),
+            Self::Coefficients { wrong, .. } => wrong.name(),
         }
     }
 }
@@ -55,116 +55,90 @@ pub fn digest(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// A guess about a whole list of coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum ListGuess {
-    /// All are zero, or none is there.
-    AllZero,
-    /// The list holds the same single number everywhere.
-    Constant,
-    /// All are the same number everywhere.
-    AllEqual,
-    /// The coefficients are rounded to single precision.
-    SinglePrecision,
-    /// The coefficients are divided by the leading one, whatever its sign.
-    Monic,
-    /// There are more of them than there should be.
-    TooLong,
-    /// The lowest power comes first.
-    Reversed,
-    /// All have the wrong sign.
-    Negated,
-    /// The lowest power comes first, and all have the wrong sign.
-    ReversedNegated,
-    /// Two of them stand in each other's places.
-    TwoExchanged,
-    /// A zero follows them.
-    TrailingZero,
-    /// The coefficients are those of another polynomial of the pair.
-    OtherPolynomial,
-    /// The coefficients are those of another polynomial of the pair, with the wrong sign.
-    OtherPolynomialNegated,
-    /// Only the constant one is there.
-    ConstantOnly,
-    /// Leading ones are missing.
-    Cut,
-    /// The last ones are missing.
-    CutEnd,
-    /// Every displacement in them carries the same factor.
-    DisplacementScale,
+fosssim_num::closed_set! {
+    /// A guess about a whole list of coefficients.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum ListGuess {
+        /// All are zero, or none is there.
+        AllZero = "all-zero", "All coefficients are zero, or none is logged";
+        /// The list holds the same single number everywhere.
+        Constant = "constant", "A constant is used instead of the polynomial";
+        /// All are the same number everywhere.
+        AllEqual = "all-equal", "All coefficients are the same constant";
+        /// The coefficients are rounded to single precision.
+        SinglePrecision = "single-precision", "The coefficients have single precision only";
+        /// The coefficients are divided by the leading one, whatever its sign.
+        Monic = "monic", "The polynomial is divided by its leading coefficient, whose sign gets lost";
+        /// There are more of them than there should be.
+        TooLong = "too-long", "The polynomial has too high a degree";
+        /// The lowest power comes first.
+        Reversed = "reversed", "The coefficients are in the wrong order, lowest power first";
+        /// All have the wrong sign.
+        Negated = "negated", "The whole polynomial has the wrong sign";
+        /// The lowest power comes first, and all have the wrong sign.
+        ReversedNegated = "reversed-negated", "The coefficients are in the wrong order and have the wrong sign";
+        /// Two of them stand in each other's places.
+        TwoExchanged = "two-exchanged", "Two coefficients are exchanged";
+        /// A zero follows them.
+        TrailingZero = "trailing-zero", "A zero is appended, which raises the degree by one";
+        /// The coefficients are those of another polynomial of the pair.
+        OtherPolynomial = "other-polynomial", "Polynomials of a pair are exchanged";
+        /// The coefficients are those of another polynomial of the pair, with the wrong sign.
+        OtherPolynomialNegated = "other-polynomial-negated",
+            "A polynomial of the pair is used instead of another one, with the wrong sign";
+        /// Only the constant one is there.
+        ConstantOnly = "cut",
+            "The polynomial is cut to its constant coefficient: it is tested at the start of the step only";
+        /// Leading ones are missing.
+        Cut = "cut", "The polynomial is cut: leading coefficients are missing";
+        /// The last ones are missing.
+        CutEnd = "cut-end", "The polynomial is cut: its last coefficients are missing";
+        /// Every displacement in them carries the same factor.
+        DisplacementScale = "displacement-scale",
+            "All displacements carry the same factor, as velocities or those of another time step do";
+    }
+    /// Returns the guess in words.
+    words
 }
 
-impl ListGuess {
-    const fn key(self) -> &'static str {
-        match self {
-            Self::AllZero => "all-zero",
-            Self::Constant => "constant",
-            Self::AllEqual => "all-equal",
-            Self::SinglePrecision => "single-precision",
-            Self::Monic => "monic",
-            Self::TooLong => "too-long",
-            Self::Reversed => "reversed",
-            Self::Negated => "negated",
-            Self::ReversedNegated => "reversed-negated",
-            Self::TwoExchanged => "two-exchanged",
-            Self::TrailingZero => "trailing-zero",
-            Self::OtherPolynomial => "other-polynomial",
-            Self::OtherPolynomialNegated => "other-polynomial-negated",
-            Self::ConstantOnly | Self::Cut => "cut",
-            Self::CutEnd => "cut-end",
-            Self::DisplacementScale => "displacement-scale",
-        }
+fosssim_num::closed_set! {
+    /// A guess about one quantity of a formula, in all its places.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum QuantityGuess {
+        /// The sign is wrong.
+        Sign = "A dot product of the formula has the wrong sign",
+        /// The quantity is zero.
+        Zero = "A quantity of the formula is zero",
+        /// The quantity carries a factor.
+        Factor = "A quantity of the formula has a wrong factor",
+        /// Another one stands there.
+        Other = "Another quantity is used instead of a dot product of the formula",
     }
 }
 
-/// A guess about one quantity of a formula, in all its places.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum QuantityGuess {
-    /// The sign is wrong.
-    Sign,
-    /// The quantity is zero.
-    Zero,
-    /// The quantity carries a factor.
-    Factor,
-    /// Another one stands there.
-    Other,
-}
-
-/// A guess about coefficients.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum CoefficientGuess {
-    /// Several are wrong, each for itself.
-    Several,
-    /// The coefficient is zero.
-    Zero,
-    /// The sign is wrong.
-    Sign,
-    /// The coefficient carries a factor.
-    Factor,
-    /// The coefficient has a term too many.
-    TermForeign,
-    /// A term is missing.
-    TermMissing,
-    /// A term's sign.
-    TermSign,
-    /// A term's factor.
-    TermFactor,
-    /// Several terms are wrong.
-    Terms,
-}
-
-impl CoefficientGuess {
-    const fn key(self) -> &'static str {
-        match self {
-            Self::Several => "coefficients",
-            Self::Zero => "coefficient-zero",
-            Self::Sign => "coefficient-sign",
-            Self::Factor => "coefficient-factor",
-            Self::TermForeign => "term-foreign",
-            Self::TermMissing => "term-missing",
-            Self::TermSign => "term-sign",
-            Self::TermFactor => "term-factor",
-            Self::Terms => "terms",
-        }
+fosssim_num::closed_set! {
+    /// A guess about coefficients.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    pub enum CoefficientGuess {
+        /// Several are wrong, each for itself.
+        Several = "coefficients", "Several coefficients are wrong ({})";
+        /// The coefficient is zero.
+        Zero = "coefficient-zero", "The {} coefficient is zero";
+        /// The sign is wrong.
+        Sign = "coefficient-sign", "The {} coefficient has the wrong sign";
+        /// The coefficient carries a factor.
+        Factor = "coefficient-factor", "The {} coefficient has a wrong factor";
+        /// The coefficient has a term too many.
+        TermForeign = "term-foreign", "The {} coefficient has a term too many";
+        /// A term is missing.
+        TermMissing = "term-missing", "A term of the {} coefficient is missing";
+        /// A term's sign.
+        TermSign = "term-sign", "A term of the {} coefficient has the wrong sign";
+        /// A term's factor.
+        TermFactor = "term-factor", "A term of the {} coefficient has a wrong factor";
+        /// Several terms are wrong.
+        Terms = "terms", "Several terms of the {} coefficient are wrong";
     }
+    /// Returns the guess in words, with braces for the names of the powers.
+    words
 }

@@ -1,5 +1,5 @@
 //! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
-use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
+use fosssim_findings::located::{Content, LocatedFailure};
 
 /// The greatest number of other contents named that the scenes can't tell from the first one.
 const NAMED: usize = 2;
@@ -11,14 +11,7 @@ pub fn located(found: &LocatedFailure) -> String {
     let Some((place, others)) = contents.split_first() else { return String::new() };
     let scenes = format!("{with} scenes {}", place_of(place));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
-    let verb = match failing {
-        FailureKind::Crash => "crash",
-        FailureKind::Error => "end with an error code",
-        FailureKind::Time => "run out of time",
-        FailureKind::Memory => "need more memory than allowed",
-        FailureKind::Output => "write more than allowed",
-        FailureKind::Several => "crash or run into a limit",
-    };
+    let verb = failing.name();
     let record = match step {
         0 => "the first one".to_owned(),
         step => format!("that of step {step}"),
@@ -47,6 +40,7 @@ fn place_of(content: &Content) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fosssim_findings::located::FailureKind;
 
     #[test]
     fn counts_and_ties_are_told() {

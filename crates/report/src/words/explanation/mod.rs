@@ -63,7 +63,7 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
             Detail::Look(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
-            Detail::Look(area) => Some(advice(*area).to_owned()),
+            Detail::Look(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
             Detail::Stage(detail) => stages::detail(detail),
@@ -86,7 +86,7 @@ pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
 /// Returns where in the program to look for what is wrong with a stage of a step.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
-        About::Stage(fault) => fault.areas().first().map(|area| advice(*area)),
+        About::Stage(fault) => fault.areas().first().map(|area| area.advice()),
         _ => None,
     }
 }
@@ -141,39 +141,8 @@ fn look_at_step(key: &str) -> &'static str {
         () if key.starts_with("linear") => {
             "Look at where forces and matrix are computed, and at what the solution of the system changes."
         }
-        () if has(&["-velocity", "behind"]) => advice(Area::Integrator),
+        () if has(&["-velocity", "behind"]) => Area::Integrator.advice(),
         () => "Look at how forces change velocities, and velocities change positions.",
-    }
-}
-
-/// Returns one sentence that says where in the program the mistake is made, without the right formula.
-const fn advice(area: Area) -> &'static str {
-    match area {
-        Area::Forces => "Look at what each force adds to the gradient, for each of its particles.",
-        Area::Jacobians => "Look at what each force adds to the second derivatives, block by block.",
-        Area::Integrator => "Look at the order in which a step changes velocities and positions, and at what it reads.",
-        Area::Penalty => "Look at what the penalty force adds to the gradient, for each kind of pair.",
-        Area::NearPairs => "Look at which pairs the search for near bodies finds, and how often.",
-        Area::ParticleParticle => "Look at the coefficients that the particle-particle detection computes.",
-        Area::ParticleEdge => "Look at the coefficients that the particle-edge detection computes.",
-        Area::ParticleHalfPlane => "Look at the coefficients that the particle-half-plane detection computes.",
-        Area::Handover => {
-            "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type."
-        }
-        Area::ContactVector => "Look at what the detection returns once the time of impact is known.",
-        Area::Decision => {
-            "Look at which pairs are tested, and at what is done with the time that the root finder returns."
-        }
-        Area::SimpleDetection => {
-            "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns."
-        }
-        Area::Response => "Look at how one contact changes velocities and positions.",
-        Area::ContinuousTime => "Look at the loop over the pairs in the single pass of continuous-time.",
-        Area::ImpulseLoop => "Look at the loop over the impulse rounds: its start, its end, and what it carries over.",
-        Area::ImpactZones => "Look at how impact zones are made, merged and compared, and when their loop ends.",
-        Area::Failsafe => "Look at how one zone is moved as a rigid body, and when it stops instead.",
-        Area::Trace => "Look at what is written to the trace, and when; the simulation itself may be right.",
-        Area::Process => "Look at how the program starts and ends.",
     }
 }
 

@@ -1,8 +1,6 @@
 //! Sentences about wrong polynomials.
 use super::{capitalized, letters};
-use fosssim_mistakes::diagnose::{
-    CoefficientGuess, Guess, ListGuess, OfPolynomials, PolynomialDetail, QuantityGuess, Substitute, Weight,
-};
+use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter};
 
 /// Returns the fault of these polynomials.
@@ -25,66 +23,14 @@ pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> 
 
 fn describe_guess(guess: &Guess) -> String {
     match guess {
-        Guess::List(guess) => describe_list(*guess).to_owned(),
+        Guess::List(guess) => guess.words().to_owned(),
         Guess::Exchange(key) => find_exchange(key).map_or(key.as_ref(), |exchange| exchange.sentence).to_owned(),
         Guess::Special(key) => find_special(key).map_or(key.as_ref(), |special| special.sentence).to_owned(),
-        Guess::Quantity(guess) => describe_quantity(*guess).to_owned(),
+        Guess::Quantity(guess) => guess.name().to_owned(),
         Guess::Coefficients { powers, wrong } => {
             let names: Vec<&str> = powers.iter().map(|power| power_name(*power)).collect();
-            describe_coefficients(*wrong).replace("{}", &names.join(", "))
+            wrong.words().replace("{}", &names.join(", "))
         }
-    }
-}
-
-const fn describe_list(guess: ListGuess) -> &'static str {
-    match guess {
-        ListGuess::AllZero => "All coefficients are zero, or none is logged",
-        ListGuess::Constant => "A constant is used instead of the polynomial",
-        ListGuess::AllEqual => "All coefficients are the same constant",
-        ListGuess::SinglePrecision => "The coefficients have single precision only",
-        ListGuess::Monic => "The polynomial is divided by its leading coefficient, whose sign gets lost",
-        ListGuess::TooLong => "The polynomial has too high a degree",
-        ListGuess::Reversed => "The coefficients are in the wrong order, lowest power first",
-        ListGuess::Negated => "The whole polynomial has the wrong sign",
-        ListGuess::ReversedNegated => "The coefficients are in the wrong order and have the wrong sign",
-        ListGuess::TwoExchanged => "Two coefficients are exchanged",
-        ListGuess::TrailingZero => "A zero is appended, which raises the degree by one",
-        ListGuess::OtherPolynomial => "Polynomials of a pair are exchanged",
-        ListGuess::OtherPolynomialNegated => {
-            "A polynomial of the pair is used instead of another one, with the wrong sign"
-        }
-        ListGuess::ConstantOnly => {
-            "The polynomial is cut to its constant coefficient: it is tested at the start of the step only"
-        }
-        ListGuess::Cut => "The polynomial is cut: leading coefficients are missing",
-        ListGuess::CutEnd => "The polynomial is cut: its last coefficients are missing",
-        ListGuess::DisplacementScale => {
-            "All displacements carry the same factor, as velocities or those of another time step do"
-        }
-    }
-}
-
-const fn describe_quantity(guess: QuantityGuess) -> &'static str {
-    match guess {
-        QuantityGuess::Sign => "A dot product of the formula has the wrong sign",
-        QuantityGuess::Zero => "A quantity of the formula is zero",
-        QuantityGuess::Factor => "A quantity of the formula has a wrong factor",
-        QuantityGuess::Other => "Another quantity is used instead of a dot product of the formula",
-    }
-}
-
-/// Returns the fault of coefficients, whose names are to be put in.
-const fn describe_coefficients(guess: CoefficientGuess) -> &'static str {
-    match guess {
-        CoefficientGuess::Several => "Several coefficients are wrong ({})",
-        CoefficientGuess::Zero => "The {} coefficient is zero",
-        CoefficientGuess::Sign => "The {} coefficient has the wrong sign",
-        CoefficientGuess::Factor => "The {} coefficient has a wrong factor",
-        CoefficientGuess::TermForeign => "The {} coefficient has a term too many",
-        CoefficientGuess::TermMissing => "A term of the {} coefficient is missing",
-        CoefficientGuess::TermSign => "A term of the {} coefficient has the wrong sign",
-        CoefficientGuess::TermFactor => "A term of the {} coefficient has a wrong factor",
-        CoefficientGuess::Terms => "Several terms of the {} coefficient are wrong",
     }
 }
 

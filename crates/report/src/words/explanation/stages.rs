@@ -1,13 +1,10 @@
 //! Sentences about stages of a step that no known mistake explains.
 use super::capitalized;
-use crate::view::key;
 use fosssim_mistakes::diagnose::{
-    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail,
-    StageFault, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
-    WrongVectors, WrongZoneRounds, WrongZones,
+    Amount, ChangeCause, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange,
+    WrongGeometric, WrongResponses,
 };
 use fosssim_model::sim::PairKind;
-use fosssim_student::Area;
 
 /// Returns the fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {
@@ -16,7 +13,7 @@ pub(super) fn what(fault: &StageFault) -> String {
 
 /// Returns the parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
 fn place(fault: &StageFault) -> String {
-    let areas: Vec<String> = fault.areas().iter().map(|area| area_name(*area)).collect();
+    let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
         _ => areas.concat(),
@@ -28,45 +25,19 @@ fn place(fault: &StageFault) -> String {
     }
 }
 
-fn area_name(area: Area) -> String {
-    let name = match area {
-        Area::Decision => "detection",
-        Area::ContactVector => "contact vector",
-        Area::SimpleDetection => "detection",
-        Area::Penalty => "penalty force",
-        Area::Response => "collision response",
-        Area::ImpulseLoop => "impulse loop",
-        Area::ImpactZones => "impact zones",
-        Area::Failsafe => "rigid failsafe",
-        // No stage lies in the others; their names are good enough.
-        _ => return key(&area),
-    };
-    name.to_owned()
-}
-
 fn describe_fault(fault: &StageFault) -> String {
     let fixed = match fault {
         StageFault::Order => "the polynomials are right, but the pairs are tested in another order",
-        StageFault::Decisions { wrong, .. } => match wrong {
-            WrongDecisions::Missed => "contacts that its polynomials show are not counted",
-            WrongDecisions::Superfluous => "contacts are counted that its polynomials do not show",
-            WrongDecisions::Both => {
-                "the polynomials are right, the decisions are not: contacts are missed, others are superfluous"
-            }
-        },
-        StageFault::Overlaps { wrong, .. } => describe_overlaps(*wrong),
+        StageFault::Decisions { wrong, .. } => wrong.name(),
+        StageFault::Overlaps { wrong, .. } => wrong.of_overlaps(),
         StageFault::Change(wrong) => return describe_change(wrong),
         StageFault::ContactTimes => "the contacts are right, but not their times of impact",
-        StageFault::ContactVectors { wrong, .. } => describe_vectors(*wrong),
+        StageFault::ContactVectors { wrong, .. } => wrong.name(),
         StageFault::Responses { wrong, .. } => return describe_responses(wrong),
         StageFault::ManyContacts => "the contacts are right, but not the state that they lead to",
         StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show change nothing",
         StageFault::Unresolved { all: false } => "some contacts that the first round's polynomials show change nothing",
-        StageFault::Rounds(number) => match number {
-            WrongNumber::Fewer => "the loop makes fewer rounds than it should",
-            WrongNumber::More => "the loop makes more rounds than it should",
-            WrongNumber::Other => "the loop makes another number of rounds than it should",
-        },
+        StageFault::Rounds(number) => number.name(),
         StageFault::HandedOver { quantity, when, .. } => {
             let what = quantity.map_or("positions and velocities", plural);
             let when = match when {
@@ -97,28 +68,13 @@ fn describe_fault(fault: &StageFault) -> String {
         StageFault::Geometric(WrongGeometric::Superfluous) => {
             "the geometric part runs although a round has found nothing"
         }
-        StageFault::ZonePositions(positions) => match positions {
-            WrongPositions::Prediction => {
-                "the first zones are searched on the predicted positions, not on those that the impulse rounds leave"
-            }
-            WrongPositions::First => {
-                "the first zones are searched on other positions than those that the impulse rounds leave"
-            }
-            WrongPositions::BeforeFailsafe => "the detection after the failsafe uses the positions before it",
-        },
+        StageFault::ZonePositions(positions) => positions.name(),
         StageFault::AfterRounds => "the impulse rounds are right, but not what follows them",
-        StageFault::ZoneRounds(rounds) => match rounds {
-            WrongZoneRounds::Growth => "zones are right in the first round, but not as they grow",
-            WrongZoneRounds::Fewer => "the zones make fewer rounds than they should",
-            WrongZoneRounds::More => "the zones make more rounds than they should",
-            WrongZoneRounds::Later => {
-                "the zones are right at first, but not in later rounds, or there are not as many as there should be"
-            }
-        },
-        StageFault::Zones(wrong) => describe_zones(*wrong),
+        StageFault::ZoneRounds(rounds) => rounds.name(),
+        StageFault::Zones(wrong) => wrong.name(),
         StageFault::Motion { wrong, .. } if wrong.is_empty() => "zones do not move as they should",
         StageFault::Motion { wrong, .. } => {
-            let wrong: Vec<&str> = wrong.iter().map(|wrong| describe_motion(*wrong)).collect();
+            let wrong: Vec<&str> = wrong.iter().map(|wrong| wrong.name()).collect();
             return wrong.join("; ");
         }
     };
@@ -134,74 +90,13 @@ fn describe_change(wrong: &WrongChange) -> String {
         }
         Quantity::Velocity => ("velocities", "positions follow from velocities as they should, but "),
     };
-    let whose = match wrong.particles {
-        ChangedParticles::Any => "",
-        ChangedParticles::Fixed => " of fixed particles only",
-        ChangedParticles::First => " of the first particle only",
-        ChangedParticles::Last => " of the last particle only",
-    };
     let axis = match wrong.axis {
         None => "",
         Some(0) => ", in their horizontal component only,",
         Some(_) => ", in their vertical component only,",
     };
-    let how = match wrong.ratio {
-        ChangeRatio::Nothing => "stay as they were",
-        ChangeRatio::Opposite => "change the opposite way",
-        ChangeRatio::Factor => "change by a wrong factor, which is always the same",
-        ChangeRatio::Other => "change wrongly",
-    };
+    let (whose, how) = (wrong.particles.name(), wrong.ratio.name());
     format!("{other}{quantity}{whose}{axis} {how}")
-}
-
-const fn describe_overlaps(wrong: WrongDecisions) -> &'static str {
-    match wrong {
-        WrongDecisions::Missed => "collisions of bodies that overlap and approach each other are missed",
-        WrongDecisions::Superfluous => {
-            "collisions are found between bodies that do not overlap, or do not approach each other"
-        }
-        WrongDecisions::Both => "some collisions are missed, and others are found where there are none",
-    }
-}
-
-const fn describe_vectors(wrong: WrongVectors) -> &'static str {
-    match wrong {
-        WrongVectors::Perpendicular => "it is perpendicular to what it should be",
-        WrongVectors::Direction => "it has the wrong direction",
-        WrongVectors::Zero => "it has no length",
-        WrongVectors::Inexact => "it is right except for its last digits",
-        WrongVectors::Reversed => "it points the other way round",
-        WrongVectors::Length => "it has the right direction, but not the right length",
-    }
-}
-
-const fn describe_zones(wrong: WrongZones) -> &'static str {
-    match wrong {
-        WrongZones::Partly => "some of a zone's particles are not moved with it",
-        WrongZones::PartlyStopped => "in zones that must stop, some particles do not",
-        WrongZones::Unmoved => "some zones that should move do not",
-        WrongZones::NotMerged => "zones that share particles are moved one after the other, not as one",
-        WrongZones::Joined => "zones that share no particle are moved as one",
-        WrongZones::Others => "zones move particles that are not theirs",
-        WrongZones::MoveOn => "zones that must stop move on as rigid bodies",
-        WrongZones::Stop => "zones stop although nothing in them is fixed",
-        WrongZones::KeepPositions => "zones that must stop do not go back to their start",
-        WrongZones::KeepVelocities => "zones that must stop do not lose their velocity",
-    }
-}
-
-const fn describe_motion(wrong: WrongMotion) -> &'static str {
-    match wrong {
-        WrongMotion::Center => "the center of mass of a zone does not move as it should",
-        WrongMotion::Distances => "the particles of a zone do not keep their distances",
-        WrongMotion::NoTurn => "zones do not turn",
-        WrongMotion::LessTurn => "zones do not turn as far as they should",
-        WrongMotion::MoreTurn => "zones turn further than they should",
-        WrongMotion::TurnBack => "zones turn the other way round",
-        WrongMotion::Turn => "zones do not turn by the angle that they should",
-        WrongMotion::Velocities => "velocities in a zone are not those of its motion from start to end",
-        WrongMotion::Speeds => "velocities in a zone are not those of its motion from start to end, though along it",
-    }
 }
 
 fn describe_responses(wrong: &WrongResponses) -> String {

@@ -34,62 +34,17 @@ fn explanation(key: &str, about: About, details: Vec<Detail>) -> Explanation {
 
 /// All guesses about the coefficients of a polynomial.
 fn guesses() -> Vec<Guess> {
-    let lists = [
-        ListGuess::AllZero,
-        ListGuess::Constant,
-        ListGuess::AllEqual,
-        ListGuess::SinglePrecision,
-        ListGuess::Monic,
-        ListGuess::TooLong,
-        ListGuess::Reversed,
-        ListGuess::Negated,
-        ListGuess::ReversedNegated,
-        ListGuess::TwoExchanged,
-        ListGuess::TrailingZero,
-        ListGuess::OtherPolynomial,
-        ListGuess::OtherPolynomialNegated,
-        ListGuess::ConstantOnly,
-        ListGuess::Cut,
-        ListGuess::CutEnd,
-        ListGuess::DisplacementScale,
-    ];
-    let quantities = [QuantityGuess::Sign, QuantityGuess::Zero, QuantityGuess::Factor, QuantityGuess::Other];
-    let coefficients = [
-        CoefficientGuess::Several,
-        CoefficientGuess::Zero,
-        CoefficientGuess::Sign,
-        CoefficientGuess::Factor,
-        CoefficientGuess::TermForeign,
-        CoefficientGuess::TermMissing,
-        CoefficientGuess::TermSign,
-        CoefficientGuess::TermFactor,
-        CoefficientGuess::Terms,
-    ];
     let of_power = |power: usize| Guess::Coefficients { powers: vec![power], wrong: CoefficientGuess::Zero };
-    lists
+    ListGuess::ALL
         .map(Guess::List)
         .into_iter()
-        .chain(quantities.map(Guess::Quantity))
-        .chain(coefficients.map(|wrong| Guess::Coefficients { powers: vec![3, 2], wrong }))
+        .chain(QuantityGuess::ALL.map(Guess::Quantity))
+        .chain(CoefficientGuess::ALL.map(|wrong| Guess::Coefficients { powers: vec![3, 2], wrong }))
         .chain((0..=5).map(of_power))
         .chain(EXCHANGES.iter().map(|exchange| Guess::Exchange(exchange.key.into())))
         .chain(SPECIALS.iter().map(|special| Guess::Special(special.key.into())))
         .collect()
 }
-
-/// All that can be wrong with zones.
-const ZONES: [WrongZones; 10] = [
-    WrongZones::Partly,
-    WrongZones::PartlyStopped,
-    WrongZones::NotMerged,
-    WrongZones::Joined,
-    WrongZones::Others,
-    WrongZones::MoveOn,
-    WrongZones::Unmoved,
-    WrongZones::Stop,
-    WrongZones::KeepPositions,
-    WrongZones::KeepVelocities,
-];
 
 /// Wrong changes of states.
 fn changes() -> [WrongChange; 4] {
@@ -130,23 +85,11 @@ fn faults() -> Vec<StageFault> {
         StageFault::Geometric(WrongGeometric::Left { always: true }),
         StageFault::Geometric(WrongGeometric::Left { always: false }),
         StageFault::Geometric(WrongGeometric::Superfluous),
-        StageFault::ZonePositions(WrongPositions::Prediction),
-        StageFault::ZonePositions(WrongPositions::First),
-        StageFault::ZonePositions(WrongPositions::BeforeFailsafe),
     ];
     for kind in [None, EDGE] {
-        let decisions = [WrongDecisions::Missed, WrongDecisions::Superfluous, WrongDecisions::Both];
-        faults.extend(decisions.map(|wrong| StageFault::Decisions { kind, wrong }));
-        faults.extend(decisions.map(|wrong| StageFault::Overlaps { kind, wrong }));
-        let vectors = [
-            WrongVectors::Perpendicular,
-            WrongVectors::Direction,
-            WrongVectors::Reversed,
-            WrongVectors::Zero,
-            WrongVectors::Inexact,
-            WrongVectors::Length,
-        ];
-        faults.extend(vectors.map(|wrong| StageFault::ContactVectors { kind, wrong }));
+        faults.extend(WrongDecisions::ALL.map(|wrong| StageFault::Decisions { kind, wrong }));
+        faults.extend(WrongDecisions::ALL.map(|wrong| StageFault::Overlaps { kind, wrong }));
+        faults.extend(WrongVectors::ALL.map(|wrong| StageFault::ContactVectors { kind, wrong }));
         let responses = [
             WrongResponses::Nothing,
             WrongResponses::Unchanged(all.clone()),
@@ -161,15 +104,15 @@ fn faults() -> Vec<StageFault> {
         }
     }
     faults.extend(changes().map(StageFault::Change));
-    faults.extend([WrongNumber::Fewer, WrongNumber::More, WrongNumber::Other].map(StageFault::Rounds));
+    faults.extend(WrongPositions::ALL.map(StageFault::ZonePositions));
+    faults.extend(WrongNumber::ALL.map(StageFault::Rounds));
     for when in [None, Some(LoopEnd::RanOut), Some(LoopEnd::Settled)] {
         let quantities = [None, Some(Quantity::Position), Some(Quantity::Velocity)];
         faults.extend(quantities.map(|quantity| StageFault::HandedOver { quantity, when, or_response: false }));
         faults.push(StageFault::HandedOver { quantity: None, when, or_response: true });
     }
-    let rounds = [WrongZoneRounds::Growth, WrongZoneRounds::Fewer, WrongZoneRounds::More, WrongZoneRounds::Later];
-    faults.extend(rounds.map(StageFault::ZoneRounds));
-    faults.extend(ZONES.map(StageFault::Zones));
+    faults.extend(WrongZoneRounds::ALL.map(StageFault::ZoneRounds));
+    faults.extend(WrongZones::ALL.map(StageFault::Zones));
     let motions = [
         vec![],
         vec![WrongMotion::Center, WrongMotion::Distances, WrongMotion::Velocities],
