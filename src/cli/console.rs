@@ -25,7 +25,7 @@ use terminal_size::{Width, terminal_size_of};
 /// The value of `--color`.
 static COLOR: OnceLock<ColorChoice> = OnceLock::new();
 
-/// Remembers what `--color` says; the first word counts.
+/// Stores the value of `--color`; the first call counts.
 pub(super) fn choose_color(color: ColorChoice) {
     let _ = COLOR.set(color);
 }
@@ -42,9 +42,8 @@ fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// Returns the style of reports on standard output. Unless `--color` says so, colors only where nobody objects
-/// (`NO_COLOR`), and only where somebody wants them (`CLICOLOR_FORCE`) or a terminal shows them (not `TERM=dumb`, not
-/// `CLICOLOR=0`).
+/// Returns the style of reports on standard output. Unless `--color` decides, colors are off with `NO_COLOR`, and on
+/// with `CLICOLOR_FORCE` or a terminal that shows them (not `TERM=dumb`, not `CLICOLOR=0`).
 pub(super) fn style() -> Style {
     let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -62,17 +61,17 @@ pub(super) fn style() -> Style {
     }
 }
 
-/// Returns whether the locale's characters are UTF-8: of these variables the first that is set decides.
+/// Returns whether the locale's characters are UTF-8: the first of these variables that is set decides.
 fn shows_signs() -> bool {
     let mut set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(|name| std::env::var(name).ok());
     let name = set.find(|value| !value.is_empty()).unwrap_or_default().to_lowercase();
     name.contains("utf-8") || name.contains("utf8")
 }
 
-/// Narrower than this no line is wrapped: a terminal that says so has not been told its size.
+/// The width below which no line is wrapped: a terminal that claims less does not know its size.
 const NARROWEST: u16 = 20;
 
-/// Returns the columns of the terminal that standard output is, if it is one.
+/// Returns the columns of standard output's terminal, if it is one.
 pub(super) fn width() -> Option<usize> {
     match terminal_size_of(io::stdout()) {
         Some((Width(width), _)) if width >= NARROWEST => Some(width.into()),
@@ -120,7 +119,7 @@ pub(super) fn complain(text: impl AsRef<[u8]>) {
     write_above_bars(text.as_ref());
 }
 
-/// Prints what is worth knowing, but no error, to standard error.
+/// Prints a remark that is no error to standard error.
 pub(super) fn remark(text: impl AsRef<[u8]>) {
     if !is_quiet() {
         complain(text);
@@ -135,7 +134,7 @@ pub(super) fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Returns whether bars are of use: on a terminal, unless nobody wants to see them.
+/// Returns whether bars are useful: on a terminal, unless they are switched off.
 pub(super) fn wants_bars() -> bool {
     io::stderr().is_terminal() && !is_quiet()
 }
@@ -147,7 +146,7 @@ pub(super) fn show_bars() -> MultiProgress {
     on_screen().get_or_insert_with(MultiProgress::new).clone()
 }
 
-/// Adds a bar of this length that looks like the template.
+/// Adds a bar of this length with this template.
 pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> ProgressBar {
     let bar = bars.add(ProgressBar::new(length));
     if let Ok(style) = ProgressStyle::with_template(template) {
@@ -159,7 +158,7 @@ pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> Prog
 /// The longest time that a command may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// How often a bar moves by itself.
+/// The time between two movements of a bar.
 const TICK: Duration = Duration::from_millis(200);
 
 /// A bar on standard error, when that is a terminal and the command takes longer than a second.
@@ -175,8 +174,8 @@ impl Bar {
         Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
     }
 
-    /// Returns a bar over this number of runs of a program, each of which may take long: shown at once, with the time
-    /// that has passed.
+    /// Returns a bar for this number of runs of a program, each of which may take long: it is shown immediately, with
+    /// the elapsed time.
     pub(super) fn for_runs(runs: u64) -> Self {
         let bar = |runs| {
             let bar = add_bar(&show_bars(), runs, "{spinner} {elapsed}: run {pos} of {len}, {wide_msg}");

@@ -7,7 +7,7 @@ use std::{fs, os::unix::fs::MetadataExt, path::Path};
 
 const FILE: &str = "fosssim.toml";
 
-/// A larger file is refused.
+/// The size of the largest file that is read.
 const LARGEST: u64 = 1 << 16;
 
 /// The contents of the file. Paths are seen from its folder.
@@ -54,7 +54,8 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     Ok(command)
 }
 
-/// Returns whether a file is this user's or the system's: in a folder that all may write to, it may be anybody's.
+/// Returns whether a file is this user's or the system's: in a folder that all may write to, another user may have
+/// written it.
 fn is_trusted(file: &Path) -> bool {
     let owner = |path: &Path| fs::metadata(path).map(|data| data.uid()).ok();
     let found = owner(file);

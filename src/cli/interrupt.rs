@@ -1,8 +1,7 @@
-//! Clearing up when the user ends the program, and who sees to it that it ends.
+//! Cleans up when the user ends the program, and ensures that it ends.
 //!
-//! The first signal lets a grading come to its end: programs are ended, and what is known is written. A user who waits
-//! for something that never comes is not waited for: where nothing moves for some seconds the program ends all the
-//! same.
+//! The first signal lets a grading finish: programs are ended, and known results are written. If nothing moves for some
+//! seconds the program ends all the same.
 use super::{exit, screen};
 use crate::suite::Cancellation;
 use std::{
@@ -25,7 +24,7 @@ pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     PENDING.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Lets SIGINT and SIGTERM remove the temporary files and the bars, and end the program. Does nothing if a command
+/// Removes the temporary files and the bars, and ends the program, on SIGINT and SIGTERM. Does nothing if a command
 /// handles these signals itself.
 pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
@@ -37,7 +36,7 @@ pub(super) fn clean_up_when_interrupted() {
 
 /// Ends the program, and leaves nothing half done behind.
 fn end() -> ! {
-    // The code below could wait, too: for a lock, or for somebody who reads what is written.
+    // The code below could wait, too: for a lock, or for a reader of its output.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
         std::process::exit(exit::INTERRUPTED.into());
@@ -51,16 +50,16 @@ fn end() -> ! {
     std::process::exit(exit::INTERRUPTED.into());
 }
 
-/// How often something has moved.
+/// The number of movements.
 static MOVES: AtomicU64 = AtomicU64::new(0);
 
-/// Says that something moves: that nobody waits in vain.
+/// Notes that something moves, so that a wait is not in vain.
 pub(super) fn show_activity() {
     MOVES.fetch_add(1, Ordering::Relaxed);
 }
 
-/// Returns a cancellation that SIGINT and SIGTERM set off. A second signal ends the program at once, and so does this
-/// program itself where it does not come to its end.
+/// Returns a cancellation that SIGINT and SIGTERM trigger. A second signal ends the program immediately, and so does
+/// this program itself if the grading does not finish.
 pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
     static SHARED: OnceLock<Arc<Cancellation>> = OnceLock::new();
     SHARED

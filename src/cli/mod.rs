@@ -17,7 +17,7 @@ use anyhow::Result;
 use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
-/// Runs the command that the program's arguments ask for.
+/// Runs the command that the program's arguments name.
 #[must_use]
 pub fn main() -> ExitCode {
     // A copy to which a mistake is pinned is a submission, and nothing else.
@@ -71,7 +71,7 @@ fn command(words: &[OsString]) -> Result<clap::Command> {
     }
 }
 
-/// Says what went wrong.
+/// Prints an error.
 fn fault(error: &anyhow::Error) -> ExitCode {
     // Names of files are a stranger's words, too.
     console::complain(plain(&format!("error: {error:#}\n")));

@@ -1,4 +1,4 @@
-//! The parts of this program that the drop-in for the original asks for: pictures.
+//! The parts of this program that the drop-in for the original needs: pictures.
 use crate::original::{NO_PICTURE_FOLDER, Pictures, Services};
 use crate::{
     cli::output::Folder,

@@ -1,10 +1,10 @@
-//! Output files: they appear whole, by renaming a finished temporary file that lies beside the target, or not at all.
+//! Output files: they appear whole, by renaming a finished temporary file next to the target, or not at all.
 //!
 //! An error, SIGINT and SIGTERM remove the temporary file. Standard output and character devices such as `/dev/null`
-//! are written directly. Pipes, sockets and block devices are refused: a pipe without a reader would block for ever.
+//! are written directly. Pipes, sockets and block devices are rejected: a pipe without a reader would block forever.
 //!
-//! A file that somebody names may be a link: then the file that it leads to is replaced. In a folder for many files the
-//! names are ours, and what has one of them already is replaced, a link, too.
+//! A file that the user names may be a link: then its target is replaced. In a folder for many files the names are
+//! ours, and an existing entry with such a name is replaced, also a link.
 use super::{
     console,
     interrupt::{clean_up_when_interrupted, pending, show_activity},
@@ -25,7 +25,7 @@ use std::{
 /// An output that is being written.
 #[derive(Debug)]
 pub(super) enum Output {
-    /// Nothing is kept.
+    /// The output is discarded.
     Nowhere,
     /// Standard output (`-`).
     Stdout,
@@ -62,7 +62,7 @@ impl Output {
                 } else if !kind.is_file() {
                     bail!("it is a pipe, socket or block device; use `-` for standard output");
                 }
-                // The rename would replace a protected file as well: ask first whether it may be written.
+                // The rename would replace a protected file as well: check first whether it may be written.
                 OpenOptions::new().write(true).open(name)?;
                 // Replaced is the file that a symbolic link points to, not the link.
                 target = name.canonicalize()?;
@@ -92,7 +92,7 @@ impl Output {
         matches!(self, Self::Stdout)
     }
 
-    /// Returns where the bytes of a file lie before it appears under its name, for a program that writes them.
+    /// Returns the place of a file's bytes before it appears under its name, for a program that writes them.
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
             Self::File(file) => Some(file.unfinished()),
@@ -100,7 +100,7 @@ impl Output {
         }
     }
 
-    /// Writes everything at once, and lets the file appear under its name.
+    /// Writes all bytes, and lets the file appear under its name.
     ///
     /// # Errors
     /// When it can't be written.
@@ -151,15 +151,15 @@ impl Output {
     }
 }
 
-/// Says where something was written; a page is for a browser.
+/// Prints the place of an output; a page is for a browser.
 pub(super) fn say_where(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
     console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
 }
 
 impl Output {
-    /// Writes to where the bytes go for now. Without a reader all of them are `taken`: one that has gone away must not
-    /// keep the command from finishing.
+    /// Writes to the present place of the bytes. Without a reader all of them count as `taken`: a reader that has ended
+    /// must not keep the command from finishing.
     fn through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
             Self::Nowhere => Ok(taken),

@@ -43,7 +43,7 @@ fn takes(pattern: &Pattern, name: &str) -> bool {
 /// The number of names that are given as examples.
 const EXAMPLES: usize = 3;
 
-/// Returns the names that are nearest to what was typed.
+/// Returns the names that are nearest to the typed one.
 fn near(typed: &str, names: &[&str]) -> String {
     let shown = near::nearest(typed, names.iter().copied(), EXAMPLES).join(", ");
     if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }

@@ -1,4 +1,4 @@
-//! The command line: that of the course's program, and what is our own.
+//! The command line: the course's arguments, and additional ones.
 use super::pin;
 use crate::student::{self, Mistake, Student, all_rows};
 use clap::Parser;
@@ -13,10 +13,10 @@ const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
 /// A copy or link of the program with this prefix makes the mistake that follows it.
 const NAME_PREFIX: &str = "fosssim-sample.";
 
-/// The greatest number of mistakes at once.
+/// The greatest number of mistakes together.
 const MOST: usize = Student::MOST;
 
-/// A sample submission: simulates a scene as a student's program would, with documented mistakes if asked for.
+/// A sample submission: simulates a scene as a student's program would, with documented mistakes on request.
 #[derive(Debug, Parser)]
 #[command(
     name = "fosssim-sample",
@@ -30,7 +30,7 @@ pub struct Options {
     /// The scene, an XML file.
     #[arg(short, long, required_unless_present = "list", value_name = "FILE")]
     pub scene: Option<PathBuf>,
-    /// Where to write the trace, a file or a pipe. Without it nothing is saved.
+    /// Where to write the trace, a file or a pipe. Without it no trace is saved.
     #[arg(short, long = "outputfile", value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// Only 0 is accepted: there is no window.
@@ -64,7 +64,7 @@ impl Options {
 }
 
 /// Returns the student with the mistakes that are pinned to the program, or else those that the command line, the
-/// program's name or the environment asks for.
+/// program's name or the environment selects.
 fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pinned {
         if id == pin::RIGHT {

@@ -1,5 +1,5 @@
-//! The deeds of hostile programs besides simulating. Everything is bounded where it could harm a machine without a
-//! sandbox; only the endless loop and the sleep are for ever.
+//! The deeds of hostile programs in addition to simulating. Everything is bounded where it could harm a machine without
+//! a sandbox; only the endless loop and the sleep last forever.
 use std::{
     fs::File,
     hint::black_box,
@@ -19,7 +19,7 @@ const PRINTED_BYTES: usize = 16 << 20;
 /// The memory that a hog takes.
 const HOG_BYTES: usize = 4 << 30;
 
-/// Where hostile programs put their names.
+/// The variable for the names of hostile programs.
 const CHILD_VARIABLE: &str = "FOSSSIM_SAMPLE_CHILD";
 
 /// The output of the original oracle after a run without faults.
@@ -56,7 +56,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
         }
         Some(Mistake::HostileChildren) => {
             for _ in 0..3 {
-                // Nobody waits for them: to be left behind is what they are for.
+                // No process waits for them: they are meant to be left behind.
                 let _child = Command::new(std::env::current_exe()?)
                     .env(CHILD_VARIABLE, "1")
                     .args(["--list"])
@@ -73,7 +73,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
 
 /// A hostile act in the middle of a run.
 pub enum MidwayAct {
-    /// The simulation goes on.
+    /// The simulation continues.
     GoOn,
     /// The program stops writing and leaves with this status.
     Leave(u8),

@@ -1,8 +1,8 @@
-//! The sample: stands for a student's submission.
+//! The sample: plays a student's submission.
 //!
 //! It speaks the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. Its physics is
 //! the second simulator, `student`; it never uses the one that judges, `sim`. `fosssim-oracle sample` runs it, and a
-//! copy of the program with a [pinned](pin) mistake is nothing else.
+//! copy of the program with a [pinned](pin) mistake is only that.
 #![expect(
     clippy::disallowed_methods,
     clippy::disallowed_types,
@@ -20,7 +20,7 @@ use arguments::Options;
 use clap::Parser;
 use std::{ffi::OsString, process::ExitCode};
 
-/// Runs the sample with the words of a command line, the program's name first, and with what is pinned to it.
+/// Runs the sample with the words of a command line, the program's name first, and with its pinned mistake.
 #[must_use]
 pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
     let words: Vec<OsString> = words.collect();

@@ -1,15 +1,15 @@
-//! A mistake that is pinned to a copy of this program: whatever the copy is called and however it is started, it is the
-//! sample, and makes this mistake. So there is a wrong program that can be handed in like a student's.
+//! A mistake that is pinned to a copy of this program: under every name and however it is started, the copy is the sample,
+//! and makes this mistake. This gives a wrong program that can be handed in like a student's.
 //!
-//! The program has a place for the mistake's id; the copy has it written there. Nothing has to be read when it runs,
-//! which the sandbox might not allow.
+//! The program has a place for the mistake's id, and in the copy the id is there. The copy need not read anything when it
+//! runs, which the sandbox might not allow.
 
-/// Pinned to a copy that makes no mistake. Only the demo makes one, and removes it.
+/// The id in a copy that makes no mistake. Only the demo makes one, and removes it.
 pub const RIGHT: &str = "right";
 
-/// How many bytes of the place hold the id, or several with commas between them; what follows is zero.
+/// The number of bytes for the id, or several ids with commas between them; the rest is zero.
 const ROOM: usize = 256;
-/// The bytes before them, by which the place is found, backwards: forwards they stand in the place alone.
+/// The bytes before them, by which the place is found, backwards: in the right order they are only in that place.
 const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The whole place.
 const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;
@@ -38,7 +38,7 @@ const fn empty() -> Place {
 
 /// Reads the mistake in a place, if there is one.
 fn read(place: &Place) -> Option<&str> {
-    // The compiler must not know what stands there: somebody writes over it later.
+    // The compiler must not know the content of the place: it is overwritten later.
     let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
     let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
     std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
@@ -74,7 +74,7 @@ mod tests {
         let place: &Place = pinned[6..6 + LENGTH].try_into().expect("as long");
         assert_eq!(read(place), Some("pe-square-no-eh"));
         assert_eq!((&pinned[..6], &pinned[6 + LENGTH..]), (&b"before"[..], &b"after"[..]));
-        // Another one may be written over it, also a shorter one.
+        // Another id may be written over it, also a shorter one.
         let again = write(&pinned, "short").expect("a place");
         assert_eq!(read(again[6..6 + LENGTH].try_into().expect("as long")), Some("short"));
     }

@@ -46,13 +46,13 @@ impl<W: Write> Trace<W> {
         self.output.write_all(&self.bytes)
     }
 
-    /// Hands the trace's end over.
+    /// Finishes the trace.
     pub fn finish(mut self) -> io::Result<()> {
         hostile::write_after_trace(self.student, &mut self.output)?;
         self.output.flush()
     }
 
-    /// Makes sure that what was recorded so far is out.
+    /// Ensures that all recorded bytes are written.
     pub fn flush(&mut self) -> io::Result<()> {
         self.output.flush()
     }

@@ -172,7 +172,7 @@ fn a_record_that_is_cut_does_not_count() {
     let workspace = Workspace::new();
     workspace.write("scene.xml", BOUNCE);
     let trace = trace_of(BOUNCE);
-    // Positions and velocities, impulses, and the polynomials but for one byte.
+    // Positions and velocities, impulses, and the polynomials except for one byte.
     workspace.write("cut.bin", &trace[..163]);
     let check = workspace.run(["check", "scene.xml", "cut.bin"]);
     assert!(check.out().contains("the trace ends after 1 record, but this scene's trace has 5"), "{}", check.shown());

@@ -56,7 +56,7 @@ fn no_mistake_passes_the_fair_rules() {
     let missed: Vec<&str> = rows(student::RowKind::Wrong)
         .into_par_iter()
         .filter(|row| {
-            // Where the mistake makes the program go on for ever, there is no whole trace to pass.
+            // Where the mistake makes the program go on forever, there is no whole trace to pass.
             !scenes.iter().any(|(_, scene)| {
                 simulated(scene, Some(row))
                     .is_none_or(|trace| judged(scene, &trace, 1).1.verdict == FairVerdict::Rejected)

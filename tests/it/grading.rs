@@ -18,7 +18,7 @@ pub(crate) const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nh
                      [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\ncredit = \"steps\"\n\
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
-/// A workspace with a suite, or nothing where programs can't be run safely.
+/// A workspace with a suite, or nothing if programs can't be run safely.
 pub(crate) fn workspace() -> Option<Workspace> {
     let workspace = Workspace::new();
     workspace.write("suite.toml", SUITE);

@@ -85,7 +85,7 @@ fn garbage_that_the_original_passes_is_rejected_and_the_rule_is_named() {
 #[test]
 fn a_suite_whose_scenes_hang_on_round_off_is_told_so() {
     let workspace = Workspace::new();
-    // At the end of the first step the ball touches the half-plane, but for a rounding.
+    // At the end of the first step the ball touches the half-plane, except for a rounding.
     let ball = |vx, vy| {
         format!(
             "<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.5\"/>\

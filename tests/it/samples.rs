@@ -259,7 +259,7 @@ fn hostile_programs_end_as_the_catalogue_says() {
     assert_ne!(forged.stderr, correct, "its physics is wrong");
 }
 
-/// NaN positions would send the course's root finder round for ever; the sample says so and stops.
+/// NaN positions would send the course's root finder round forever; the sample says so and stops.
 #[test]
 fn a_run_that_would_never_end_stops_with_status_3() {
     let folder = tempfile::tempdir().expect("a folder");

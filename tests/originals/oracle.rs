@@ -1,4 +1,4 @@
-//! Runs the originals, under limits of time and memory: some input makes them run for ever or take all memory.
+//! Runs the originals, under limits of time and memory: some input makes them run forever or take all memory.
 use fosssim_oracle::assignments::Assignment;
 use fosssim_testing::{Need, skip};
 use std::{

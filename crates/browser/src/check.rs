@@ -21,7 +21,7 @@ use std::io::{Cursor, Read};
 /// A trace to be judged.
 #[derive(Debug, Deserialize)]
 pub(crate) struct CheckRequest {
-    /// The scene's name: `asset:Group/name` for one of those inside, else that of its file.
+    /// The scene's name: `asset:Group/name` for an embedded scene, else its file's.
     scene: String,
     /// The name of the trace's file.
     trace: String,
@@ -30,7 +30,7 @@ pub(crate) struct CheckRequest {
     file: u32,
     #[serde(default)]
     rules: Rules,
-    /// Whether the page is asked for, and not the JSON alone.
+    /// Whether the page is requested, and not the JSON alone.
     #[serde(default)]
     html: bool,
 }
@@ -80,7 +80,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     Ok((value, parts))
 }
 
-/// Reads a scene that was dropped, or one of those inside.
+/// Reads a dropped or an embedded scene.
 pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String> {
     let xml = match (xml, name.strip_prefix("asset:")) {
         (Some(xml), _) => xml,

@@ -9,7 +9,7 @@ use fosssim_report::page::Audience;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// A suite and its own scenes, as if somebody had dropped them.
+/// A suite and its own scenes, as if they had been dropped.
 #[derive(Debug)]
 pub struct CourseSuite(Value);
 
@@ -56,14 +56,14 @@ fn is_inside(task: &SceneTask) -> bool {
     library::scene(&task.name).is_some_and(|xml| xml == task.xml)
 }
 
-/// Returns the file of a scene, beside the suite.
+/// Returns the file of a scene, next to the suite.
 fn file(task: &SceneTask) -> String {
     format!("{}.xml", task.name)
 }
 
 /// Renders the suite without what grading alone needs.
 fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
-    // A string of JSON is one of TOML.
+    // A JSON string is also a TOML string.
     let string = |text: &str| Value::from(text).to_string();
     let milestone = plan.milestone.map(|milestone| format!("milestone = \"{}\"\n", milestone.key()));
     let milestone = milestone.unwrap_or_default();

@@ -1,4 +1,4 @@
-//! `detect`: one pair, looked at closely.
+//! `detect`: one pair in detail.
 use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
@@ -52,7 +52,7 @@ impl PairRequest {
     }
 }
 
-/// Looks at a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
+/// Examines a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
 /// once more for a page that has the style of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.motion()?)

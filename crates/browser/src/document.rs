@@ -1,7 +1,7 @@
-//! The page: one HTML file with the module inside, which asks for nothing else.
+//! The page: one HTML file with the module inside, which loads nothing else.
 //!
-//! Its policy allows its script, its style and those of the reports that it shows by their digests, the module, and a
-//! worker that the page makes itself; no address is among the sources.
+//! Its policy allows by their digests its script, its style and those of the reports that it shows. It also allows the
+//! module, and a worker that the page makes itself; no address is among the sources.
 use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use fosssim_report::page::{ELEMENTS, digest, framed, style};
@@ -51,8 +51,8 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     )
 }
 
-/// Returns a script without what only its authors need: indentation and lines that are comments. But for scenes, no
-/// text in it goes over several lines.
+/// Returns a script without what only its authors need: indentation and lines that are comments. Except in scenes, no
+/// text in it spans several lines.
 fn lines(parts: &[&str]) -> String {
     let lines = parts.iter().flat_map(|part| part.lines());
     lines

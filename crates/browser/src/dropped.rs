@@ -7,7 +7,7 @@ use std::{
     sync::OnceLock,
 };
 
-/// The number of bytes that the browser is asked for at once: each call takes some 0.1 ms.
+/// The number of bytes that the browser is asked for in one call: each call takes some 0.1 ms.
 const PIECE: usize = 1 << 20;
 
 /// The first bytes of every zstd frame.
@@ -16,7 +16,7 @@ const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 /// The reason why a file can't be read to its end, and what to do.
 pub(crate) type ReadFault = OnceLock<&'static str>;
 
-/// The page, as far as requests need it.
+/// The functions of the page that requests need.
 pub trait PageHost: Sync {
     /// Reads bytes of the dropped file of this number from an offset on. Returns how many; 0 at the file's end, `None`
     /// when it can't be read.
@@ -26,7 +26,7 @@ pub trait PageHost: Sync {
     fn progress(&self, done: u32, all: u32);
 }
 
-/// Tells how far judging is.
+/// Reports the progress of judging.
 pub(crate) struct ToldProgress<'a> {
     pub(crate) host: &'a dyn PageHost,
     pub(crate) all: u32,
@@ -67,7 +67,7 @@ impl Read for DroppedFile<'_> {
     }
 }
 
-/// The content of a zstd file. A copy that was damaged on its way says nothing about the trace.
+/// The content of a zstd file. A damaged copy proves nothing about the trace.
 struct ZstdContent<'a> {
     frames: Frames<BufReader<DroppedFile<'a>>>,
     fault: &'a ReadFault,
@@ -79,14 +79,14 @@ enum Frames<R: Read> {
     Next(R),
     /// In one.
     Within(Box<StreamingDecoder<R, FrameDecoder>>),
-    /// Behind the last one.
+    /// Behind the last byte.
     End,
 }
 
 impl Read for ZstdContent<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         self.frames.read(into).inspect_err(|_| {
-            // That the file is gone has been told already, and is the better explanation.
+            // A missing file has been reported already, and is the better explanation.
             let _ = self.fault.set("the zstd data is cut short or damaged; copy it again");
         })
     }

@@ -1,4 +1,4 @@
-//! A scene that is being written: what its strict reader says, and the reference's motion.
+//! A scene that is being written: the problems that its strict reader finds, and the reference's motion.
 use crate::{dropped::PageHost, parts::PageAnswer};
 use fosssim_model::{
     scene::{self, LoadedScene, Problem, Scene, Severity},
@@ -18,7 +18,7 @@ use std::io::{self, Write};
 /// The most numbers of a motion that are kept; the largest course scene has 70,444.
 const MOST_NUMBERS: usize = 1 << 24;
 
-/// The longest trace that is made at once, in bytes.
+/// The longest trace that is made in one go, in bytes.
 const LONGEST_TRACE: usize = 1 << 30;
 
 /// Films of more pictures leave some out, as those of the command line do.
@@ -27,7 +27,7 @@ const LONG_FILM: u32 = 1500;
 /// Pictures per second of a film.
 const RATE: u16 = 25;
 
-/// How many steps go by between two words about progress.
+/// The number of steps between two reports of progress.
 const NEWS: u32 = 64;
 
 /// A picture of the motion.
@@ -39,7 +39,7 @@ pub(crate) struct PictureRequest {
     form: PictureForm,
 }
 
-/// How a picture is given.
+/// The form of a picture.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum PictureForm {
@@ -194,7 +194,7 @@ impl Film {
         Ok((json!({ "pictures": pictures }), vec![bytes]))
     }
 
-    /// Returns the reference's trace, byte for byte that of `simulate`.
+    /// Returns the reference's trace, byte for byte as `simulate` writes it.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
         let kept = TraceRoom(Vec::new());

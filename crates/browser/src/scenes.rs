@@ -14,7 +14,7 @@ use fosssim_report::check::{LOOKED_AT, looks_like};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
-/// No first record is longer, but of scenes that nobody drops.
+/// The length of the longest first record, except in scenes that are too large to be dropped.
 const LONGEST_RECORD: u64 = 1 << 16;
 
 /// Lists the scenes' names by assignment and group, in alphabetical order.
@@ -51,7 +51,7 @@ pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
 }
 
-/// Returns whether a trace with this beginning may be one of the scene.
+/// Returns whether a trace with this beginning may belong to the scene.
 fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
     let Ok(loaded) = scene::read("", xml) else { return false };
     let simulation = Simulation::new(&loaded.scene, RootSearch::WhereNeeded);

@@ -17,9 +17,9 @@ use serde_json::json;
 enum PageRequest {
     /// The scenes and suites that are inside.
     Scenes,
-    /// The XML of one of them.
+    /// The XML of an embedded scene.
     Scene { name: String },
-    /// A wrong trace to look at, with its scene.
+    /// A wrong trace to examine, with its scene.
     Example,
     /// Reads the scene of the second part: whether its strict reader takes it.
     Read { name: String },
@@ -28,7 +28,7 @@ enum PageRequest {
         #[serde(default)]
         file: u32,
     },
-    /// Judges a dropped trace. The second part is the scene's XML, unless it is one of those inside.
+    /// Judges a dropped trace. The second part is the scene's XML, unless the scene is embedded.
     Check(check::CheckRequest),
     /// Reads the scene of the second part, and simulates it if it is right.
     Simulate { scene: String },
@@ -38,11 +38,11 @@ enum PageRequest {
     Picture(film::PictureRequest),
     /// The scene's motion as a film.
     Film(film::FilmKind),
-    /// Looks at one pair.
+    /// Examines one pair.
     Detect(detect::PairRequest),
     /// Begins to grade a submission's traces. Without a name the second part is the suite, dropped scenes follow.
     Suite(SuiteRequest),
-    /// Judges one of its scenes.
+    /// Judges one of the suite's scenes.
     Judge(SceneRequest),
     /// Puts the results together under this name.
     Grade { name: String },
@@ -56,7 +56,7 @@ pub struct PageSession {
 }
 
 impl PageSession {
-    /// Answers a request. The first part of an answer is JSON: what was asked for, or `{"error": "words"}`.
+    /// Answers a request. The first part of an answer is JSON: the requested result, or `{"error": "words"}`.
     #[must_use]
     pub fn answer(&mut self, request: &[u8], host: &dyn PageHost) -> Vec<u8> {
         let (value, bytes) = self.parsed(request, host).unwrap_or_else(|error| (json!({ "error": error }), Vec::new()));

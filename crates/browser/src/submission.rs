@@ -22,12 +22,12 @@ use std::io::{Read, empty};
 /// their names, as the suite may write them, in the order of the parts behind the suite's text.
 #[derive(Debug, Deserialize)]
 pub(crate) struct SuiteRequest {
-    /// The name of a suite that is inside; none where its text was dropped.
+    /// The name of an embedded suite; `None` if its text was dropped.
     suite: Option<String>,
     /// The names of dropped scenes.
     #[serde(default)]
     scenes: Vec<String>,
-    /// Whether its hints say how much is told, as in `grade --for student`: a course made the page so.
+    /// Whether its hints decide what is shown, as in `grade --for student`: the course made the page so.
     #[serde(default)]
     is_for_students: bool,
 }
@@ -123,7 +123,7 @@ impl DroppedSubmission {
     }
 }
 
-/// Returns the dropped scenes that a pattern takes, by their paths beside the suite.
+/// Returns the dropped scenes that a pattern selects, by their paths next to the suite.
 fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern {pattern}: {error}"))?;
     let found: MatchingScenes = names

@@ -1,5 +1,5 @@
-//! The module's surface: three functions that the page calls, three that it gives. What goes from one side to the other
-//! lies in the module's memory.
+//! The module's surface: three functions that the page calls, three that it gives. Data for the other side are in the
+//! module's memory.
 #![expect(unsafe_code, reason = "names of exported and imported functions")]
 use crate::{PageHost, PageSession};
 use std::{cell::RefCell, panic, sync::Once};
@@ -9,7 +9,7 @@ unsafe extern "C" {
     /// Reads bytes of a dropped file into `into`; returns how many, or -1.
     safe fn read(file: u32, offset: f64, into: *mut u8, length: usize) -> i32;
     safe fn progress(done: u32, all: u32);
-    /// Is told why the module is about to trap.
+    /// Receives the reason why the module is about to trap.
     safe fn panicked(words: *const u8, length: usize);
 }
 
@@ -41,7 +41,7 @@ extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request, and returns where the answer begins.
+/// Answers the request, and returns the place at which the answer begins.
 #[unsafe(no_mangle)]
 extern "C" fn answer() -> *const u8 {
     static HOOK: Once = Once::new();

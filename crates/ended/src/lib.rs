@@ -1,4 +1,4 @@
-//! How the run of a program ended, as a value: what the sandbox says, grades keep and reports put into words.
+//! How the run of a program ended, as a value: the sandbox makes it, grades store it and reports put it into words.
 //!
 //! ```
 //! use fosssim_ended::RunEnd;
@@ -23,7 +23,7 @@ pub enum RunEnd {
     CpuLimit,
     /// The program used up its time on the clock.
     WallLimit,
-    /// The program held more memory than allowed, or gave up because it was refused memory that it asked for.
+    /// The program held more memory than allowed, or stopped because memory was denied.
     MemoryLimit,
     /// The program's trace is longer than allowed.
     TraceLimit,
@@ -147,7 +147,7 @@ pub enum StartProblem {
         /// The system for which it was built.
         system: Cow<'static, str>,
     },
-    /// The program names a dynamic loader that is not one of this system's.
+    /// The program names a dynamic loader that this system does not have.
     #[error("the program needs a dynamic loader that is not on this machine; build it on the grading platform")]
     MissingLoader {},
     /// A shared library is missing.
@@ -167,7 +167,7 @@ pub enum StartProblem {
         /// Advice, or nothing.
         hint: Cow<'static, str>,
     },
-    /// The interpreter is not one of the system's.
+    /// The interpreter is not part of the system.
     #[error(
         "it asks to be run by {path}, which is not an interpreter of the system; \
          begin a script with #!/usr/bin/env NAME or #!/bin/sh"
@@ -176,7 +176,7 @@ pub enum StartProblem {
         /// The path that the program names.
         path: String,
     },
-    /// The program was built with a sanitizer, and nobody has said that such programs may run.
+    /// The program was built with a sanitizer, and such programs were not allowed.
     #[error(
         "the program was built with a sanitizer (-fsanitize), for which memory can't be limited; build it without, \
          or allow it in the suite"
@@ -185,7 +185,7 @@ pub enum StartProblem {
     /// The file is the grader itself.
     #[error("this is the grader's own program, not a submission; name the submission's program")]
     GradersOwn,
-    /// Somebody has the file open for writing.
+    /// Another process has the file open for writing.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
     Busy,
     /// The program wanted a window.

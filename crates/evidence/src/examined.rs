@@ -1,4 +1,4 @@
-//! A trace that is judged once, with all that may be asked of it afterwards.
+//! A trace that is judged once, with all data for later requests.
 use crate::{
     gather::{Evidence, Focus, gather},
     rulings::{StepRuling, StepRulings},
@@ -17,10 +17,9 @@ use std::io::{self, Read};
 pub enum KeptPart {
     /// Nothing: the trace is neither explained nor shown.
     Nothing,
-    /// The trace's beginning; where judging stops, nothing more is read. The writer of a trace that comes once may
-    /// write no more.
+    /// The trace's beginning; when judging stops, nothing more is read. The writer of a piped trace may write no more.
     Read,
-    /// The trace's beginning, with what follows the place where judging stops.
+    /// The trace's beginning, including what follows the place where judging stops.
     All,
 }
 
@@ -51,7 +50,7 @@ pub fn examine<'a, R: Read + Send>(
     let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut BothObservers(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
         let room = (LONGEST - kept.bytes().len()) as u64;
-        // An error ends what is kept.
+        // An error ends the kept part.
         let _ = io::copy(&mut kept.reader(trace.take(room)), &mut io::sink());
     }
     ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }
@@ -64,8 +63,8 @@ impl ExaminedTrace<'_> {
         explain_kept(self.scene, &self.trace)
     }
 
-    /// Returns the evidence, with at most `budget` numbers of each motion: of the whole trace, where it can be read
-    /// again, else of what was kept.
+    /// Returns the evidence, with at most `budget` numbers of each motion: of the whole trace if it can be read again,
+    /// else of the kept part.
     #[must_use]
     pub fn evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
         let (fair, focus) = (self.outcome.fair.is_some(), Focus::from_outcome(&self.outcome));

@@ -1,4 +1,4 @@
-//! Goes through a trace once more, beside the reference.
+//! Reads a trace once more, together with the reference.
 use crate::{
     inspected_step::{InspectedStep, Inspector, WantedCalls, go_on_from},
     rulings::StepRuling,
@@ -28,7 +28,7 @@ pub enum StepClass {
     Wrong,
     /// Right by itself, from a state that an earlier wrong step has led to.
     Inherited,
-    /// Not judged, or nobody is to blame for its numbers.
+    /// Not judged, or in a damaged record, which proves nothing.
     Unknown,
 }
 
@@ -57,11 +57,11 @@ pub struct Step {
     pub velocity: f64,
     /// Detection passes of the reference.
     pub expected_passes: u32,
-    /// Detection passes that the trace's number of polynomials makes; `None` where it is no whole number of passes.
+    /// Detection passes that the trace's number of polynomials makes; `None` if it is no whole number of passes.
     pub actual_passes: Option<u32>,
 }
 
-/// A place to look at closely: a step, and there a pair in a pass, or wherever it collides.
+/// A place to show in detail: a step, and there a pair in a pass, or in all passes in which it collides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Focus {
     /// The step, from 1.
@@ -87,7 +87,7 @@ impl From<&Finding> for Focus {
     }
 }
 
-/// Everything that a viewer shows of one trace.
+/// The data that a viewer shows of one trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
     /// The trace's shape.
@@ -98,16 +98,16 @@ pub struct Evidence {
     pub reference: Track,
     /// The trace's motion.
     pub submission: Track,
-    /// All steps, as far as trace and reference go.
+    /// All steps that trace and reference have.
     pub steps: Vec<Step>,
-    /// The steps looked at closely, in their order.
+    /// The steps shown in detail, in their order.
     pub inspected: Vec<InspectedStep>,
 }
 
-/// Goes through a trace: `rulings` are the judge's in the order of the steps, `fair` says which book decides, and
+/// Reads a trace: `rulings` are the judge's in the order of the steps, `fair` selects the book that decides, and
 /// `focus` names the places of findings, the most important first.
 ///
-/// A trace that can't be read to its end gives evidence as far as it goes.
+/// A trace that can't be read to its end gives evidence up to that place.
 pub fn gather(
     scene: &Scene,
     trace: &mut dyn Read,
@@ -155,7 +155,7 @@ pub fn gather(
     gathering.evidence
 }
 
-/// Returns the calls of a step to look at closely.
+/// Returns the calls of a step to show in detail.
 fn wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
     let of_step = focus.iter().filter(|focus| focus.step == step);
     of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?))).collect()
@@ -220,7 +220,7 @@ impl<'a> Gathering<'a> {
         }
     }
 
-    /// Makes a step from the trace's own state; `None` where it has no result. With `wanted` it is looked at closely.
+    /// Makes a step from the trace's own state; `None` if it has no result. With `wanted` it is inspected in detail.
     fn step<'f>(
         &mut self,
         step: u32,
@@ -240,7 +240,7 @@ impl<'a> Gathering<'a> {
         let done = self.work.step(&mut self.own, &mut (&mut inspector, &mut count)).is_ok();
         let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
         inspector.step.actual_contacts.clone_from(impulses);
-        // The inspector comes first: it keeps the expected mid record, and makes the step go on with the trace's.
+        // The inspector comes first: it keeps the expected mid record, and makes the step continue with the trace's.
         if let (Some(expected), Some(mid)) = (&inspector.step.expected_mid, mid_state) {
             count.apart = apart(expected, mid);
         }
@@ -265,8 +265,8 @@ impl<'a> Gathering<'a> {
     }
 }
 
-/// Returns the steps to look at: those of findings, and those around the first wrong one, the most important ones if
-/// they are many.
+/// Returns the steps to show in detail: those of findings, and those around the first wrong one; of many, the most
+/// important ones.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
     let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, CLOSE_UPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);

@@ -9,16 +9,16 @@ use fosssim_model::{
 /// A pair in a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectedPair {
-    /// The step; its calls are those of the pair, pass by pass.
+    /// The step; its calls are the pair's, pass by pass.
     pub step: InspectedStep,
-    /// Where the step ended.
+    /// The end state of the step.
     pub end: State,
     /// The reason why it has no result.
     pub failed: Option<StepError>,
 }
 
-/// Looks at all detection calls of a pair in a step that starts from `before`. The step goes on with the trace's
-/// `records`, or without these as the reference goes on: the state of its mid record, which counts for `hybrid`, and
+/// Inspects all detection calls of a pair in a step that starts from `before`. The step continues with the trace's
+/// `records`, or without these as the reference continues: the state of its mid record, which counts for `hybrid`, and
 /// the polynomials of its end record.
 #[must_use]
 pub fn inspect(
@@ -38,7 +38,7 @@ pub fn inspect(
     simulation.set_steps_done(step - 1);
     let failed = simulation.step(&mut watch).err();
     let mut step = watch.finish();
-    // Other faults of the step are not asked for.
+    // Other faults of the step do not matter here.
     step.calls.retain(|call| call.pair == pair);
     InspectedPair { step, end: simulation.state().clone(), failed }
 }

@@ -1,4 +1,4 @@
-//! One step looked at closely: every detection pass, contact and zone, and the calls that findings are about.
+//! One step in detail: every detection pass, contact and zone, and the calls that findings are about.
 use crate::matching::{differ, matching};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
@@ -10,7 +10,7 @@ use fosssim_model::{
 /// The greatest number of passes kept of a step, and of numbers in their positions; large scenes have fewer passes.
 const PASSES: usize = 24;
 const POSITIONS: usize = 12_000;
-/// The greatest number of pairs kept of a pass: differing ones, missing ones, repeated ones.
+/// The greatest number of pairs kept of a pass: differing, missing, and repeated ones.
 const PAIRS: usize = 256;
 /// The number of calls kept of a step, in case the trace has logged another number of polynomials.
 const CALLS: usize = 1 << 14;
@@ -24,17 +24,17 @@ pub struct InspectedPass {
     pub pass: Pass,
     /// Positions at the end of the step as the pass sees them.
     pub q_end: Vec<f64>,
-    /// The number of pairs that it looks at.
+    /// The number of pairs that it checks.
     pub calls: usize,
     /// The collisions that it finds.
     pub hits: Vec<Impulse>,
-    /// Pairs for which the trace has logged other polynomials, up to a factor; the first ones.
+    /// The first pairs for which the trace has logged other polynomials, up to a factor.
     pub differing: Vec<Pair>,
-    /// Pairs for which it has logged none; the first ones.
+    /// The first pairs for which it has logged none.
     pub missing: Vec<Pair>,
-    /// Pairs whose polynomials it has logged once more; the first ones.
+    /// The first pairs whose polynomials it has logged once more.
     pub repeated: Vec<Pair>,
-    /// Whether it can be told which of the trace's polynomials belong to this pass.
+    /// Whether the trace's polynomials of this pass are known.
     pub is_logged: bool,
 }
 
@@ -50,7 +50,7 @@ pub struct MergedZones {
 /// The trace's log of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CallLog {
-    /// These polynomials in the order of the reference's, highest power first; one that is missing is empty.
+    /// These polynomials in the order of the reference's, highest power first; a missing one is empty.
     These(Vec<Vec<f64>>),
     /// Nothing.
     Nothing,
@@ -58,7 +58,7 @@ pub enum CallLog {
     Unknown,
 }
 
-/// A detection call that is looked at.
+/// A detection call in detail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectedCall {
     /// The pass.
@@ -73,24 +73,24 @@ pub struct InspectedCall {
     pub logged: CallLog,
 }
 
-/// One step looked at closely.
+/// One step in detail.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct InspectedStep {
     /// The step, from 1.
     pub step: u32,
     /// The expected mid record, given the state that the step starts from.
     pub expected_mid: Option<State>,
-    /// The expected end record, given the trace's own mid record; `None` where the step has no result.
+    /// The expected end record, given the trace's own mid record; `None` if the step has no result.
     pub expected_end: Option<State>,
-    /// The reference's detection passes, the first ones.
+    /// The first of the reference's detection passes.
     pub passes: Vec<InspectedPass>,
     /// The number of passes that the reference makes.
     pub expected_passes: usize,
     /// The number of polynomials that the reference logs.
     pub expected_polynomials: usize,
-    /// How many the trace has logged.
+    /// The number of polynomials that the trace has logged.
     pub actual_polynomials: usize,
-    /// How many of them stand for no call of the reference; `None` where that can't be told.
+    /// The number of these that answer no call of the reference; `None` if it is unknown.
     pub surplus: Option<usize>,
     /// The responses of the reference.
     pub expected_contacts: Vec<Impulse>,
@@ -105,9 +105,9 @@ pub struct InspectedStep {
 /// Which calls of a pair are wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum WantedCalls {
-    /// Those that end in a collision.
+    /// The calls that end in a collision.
     Hits,
-    /// That of this pass.
+    /// The call of this pass.
     In(Pass),
     /// All.
     Every,
@@ -127,7 +127,7 @@ struct AskedCall {
 /// Listens to one step of the reference.
 pub(crate) struct Inspector<'a> {
     scene: &'a Scene,
-    /// The trace's mid record, which the step goes on with, and its polynomials.
+    /// The trace's mid record, with which the step continues, and its polynomials.
     mid: Option<&'a State>,
     log: Option<&'a PolynomialLog>,
     wanted: &'a [(WantedCalls, Pair)],
@@ -135,7 +135,7 @@ pub(crate) struct Inspector<'a> {
     /// The calls and their polynomials; none beyond [`CALLS`].
     asked: Vec<AskedCall>,
     right: PolynomialLog,
-    /// For each call that is looked at its number in the step and its first polynomial's.
+    /// For each inspected call its number in the step and its first polynomial's.
     places: Vec<(usize, usize)>,
     /// All calls so far.
     calls: usize,
@@ -153,7 +153,7 @@ impl<'a> Inspector<'a> {
         wanted: &'a [(WantedCalls, Pair)],
     ) -> Self {
         let step = InspectedStep { step, actual_polynomials: logged, ..InspectedStep::default() };
-        // An entry that was not kept looks like one that is missing.
+        // An entry that was not kept looks like a missing one.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
         Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, step }
@@ -183,7 +183,7 @@ impl<'a> Inspector<'a> {
         self.step
     }
 
-    /// Tells which polynomials of a list of another length belong to which call.
+    /// Assigns the polynomials of a list of another length to calls.
     fn assign(&mut self, log: &PolynomialLog) {
         let Some(found) = matching(&self.right, log) else { return };
         let mut is_claimed = vec![false; log.len()];
@@ -222,7 +222,7 @@ impl<'a> Inspector<'a> {
         }
         let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
         self.step.surplus = Some(surplus);
-        // A polynomial that stands for no call may be of one that was made twice: then it follows or precedes the
+        // A polynomial that answers no call may be of a call that was made twice: then it follows or precedes the
         // polynomials of its pass.
         let mut place = 0;
         while place < log.len() && surplus > 0 {
@@ -253,7 +253,7 @@ impl<'a> Inspector<'a> {
         }
     }
 
-    /// Looks at calls that are wrong or missing although no finding names them.
+    /// Inspects calls that are wrong or missing although no finding names them.
     fn show_more(&mut self) {
         let Some(pass) =
             self.step.passes.iter().position(|pass| !(pass.differing.is_empty() && pass.missing.is_empty()))
@@ -309,7 +309,7 @@ impl Steer for Inspector<'_> {
     }
 }
 
-/// Has a step go on from the trace's mid record, where it has one of the scene's size.
+/// Continues a step from the trace's mid record, if it has one of the scene's size.
 pub(crate) fn go_on_from(mid: Option<&State>, state: &mut State) -> Resume {
     match mid {
         Some(mid) if mid.positions.len() == state.positions.len() => {
@@ -356,7 +356,7 @@ impl Observer for Inspector<'_> {
         });
         if wanted {
             let study = Study::for_motion(&motion());
-            // Only the whole step tells whether the list is as long as the reference's.
+            // Only the whole step shows whether the list is as long as the reference's.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
             self.places.push((self.calls - 1, first));
         }

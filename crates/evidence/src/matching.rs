@@ -1,15 +1,15 @@
-//! Which of the reference's polynomials a trace's list answers where it has another number of them.
+//! Assigns the polynomials of a trace's list to the reference's if their numbers differ.
 //!
 //! The shortest edit script between the two lists (R. A. Wagner and M. J. Fischer, "The string-to-string correction
-//! problem", J. ACM 21, 1974): what is left out or put in costs more than half of what a wrong polynomial costs, so
-//! that a wrong one in the right place is no missing one. A mark is no verdict: where wrong and missing ones come
-//! together, other scripts may be as short.
+//! problem", J. ACM 21, 1974): an omission or insertion costs more than half of what a wrong polynomial costs, so that
+//! a wrong polynomial in the right place is not taken for a missing one. A mark is no verdict: with wrong and missing
+//! ones together, other scripts may be as short.
 use fosssim_model::trace::PolynomialLog;
 
 /// The greatest number of pairs of polynomials that are compared.
 const CELLS: usize = 4 << 20;
 
-/// Costs of a polynomial that is left out or put in, and of one that is wrong.
+/// The costs of an omitted or inserted polynomial, and of a wrong one.
 const GAP: u32 = 2;
 const WRONG: u32 = 3;
 
@@ -17,8 +17,8 @@ const WRONG: u32 = 3;
 /// is no verdict; raised, faint differences get none.
 const MARKED: f64 = 1e-9;
 
-/// Finds for each expected polynomial the place of the one in the trace's list that stands for it, right or wrong;
-/// `None` where the lists are too long to be compared.
+/// Finds for each expected polynomial the place of its answer in the trace's list, right or wrong; `None` if the lists
+/// are too long to be compared.
 pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
@@ -123,7 +123,7 @@ mod tests {
             log
         };
         assert_eq!(matching(&many(1.0, 4000), &many(-1.0, 4001)), None);
-        // Where all but a few agree, length is no matter.
+        // If all but a few agree, the length does not matter.
         assert_eq!(matching(&many(1.0, 4000), &many(1.0, 4001)).map(|found| found.len()), Some(4000));
     }
 }

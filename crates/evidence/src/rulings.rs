@@ -1,4 +1,4 @@
-//! Which steps are wrong, as the judge says while it judges.
+//! The wrong steps, noted while the judge judges.
 use fosssim_judge::{
     Outcome,
     replay::{Progress, Remark, WrongStep},
@@ -9,9 +9,9 @@ use fosssim_judge::{
 pub struct StepRuling {
     /// Whether the original's rules find something wrong in it.
     pub wrong_by_parity: bool,
-    /// Whether the fair rules do; `false` also if they were not asked.
+    /// Whether the fair rules find it wrong; `false` also if they did not judge.
     pub wrong_by_fair: bool,
-    /// Whether its records, or some before it, are damaged: then nobody is to blame for its numbers.
+    /// Whether its records, or some before it, are damaged: then its numbers prove nothing.
     pub damaged: bool,
 }
 

@@ -9,7 +9,7 @@ use std::io::Read;
 /// records); lowered, long scenes show a part of their motion only; raised, memory and pages grow.
 pub const BUDGET: usize = 1 << 21;
 
-/// The records that are kept: those of the steps `first` to `last` (0 is the initial record).
+/// The kept records: those of the steps `first` to `last` (0 is the initial record).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
     /// The first step; its end record is the first that is kept.
@@ -54,7 +54,7 @@ pub struct Track {
 }
 
 impl Track {
-    /// Reads the records of a trace in a window, as far as it can be read.
+    /// Reads the records of a trace in a window, up to the place at which it can't be read.
     #[must_use]
     pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
         let mut reader = Lenient::new(trace, layout);

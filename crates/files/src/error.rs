@@ -9,13 +9,13 @@ use std::{
 /// The reason why a file was not taken. Except for [`FileError::System`] the person who filled the folder caused these.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// Nothing lies there.
+    /// There is no file of this name.
     #[error("there is no file {name}")]
     Missing {
         /// The file's name, escaped.
         name: String,
     },
-    /// Something else lies there.
+    /// There is something else of this name.
     #[error("{name} is {what}, not a regular file")]
     NotRegular {
         /// The file's name, escaped.
@@ -70,7 +70,7 @@ pub(crate) fn escaped(name: &OsStr) -> String {
     name.to_string_lossy().escape_debug().to_string()
 }
 
-/// Returns the facts of an open file, which must be a regular one.
+/// Returns the facts of an open file, which must be a regular file.
 pub(crate) fn regular(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
     let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
     let kind = metadata.file_type();

@@ -1,4 +1,4 @@
-//! Files beneath a folder that somebody else may have filled, or fills meanwhile.
+//! Files beneath a folder that others may have filled, or fill meanwhile.
 use super::{
     Identity,
     error::{FileError, escaped, regular},
@@ -19,14 +19,14 @@ use std::{
     sync::Arc,
 };
 
-/// How everything is opened: never through a link, never waiting, never handed on.
+/// The way in which everything is opened: never through a link, never waiting, never inherited.
 const CLOSED: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
 
 /// The bits of a new folder's mode, before the mask.
 const FOLDER_MODE: u32 = 0o777;
 
-/// A folder that is held open. What lies in it is reached by its own names only: no link leads out, and nobody who
-/// exchanges a path meanwhile leads elsewhere.
+/// A folder that is held open. Its entries are reached by their own names only: no link leads out, and a path that is
+/// exchanged meanwhile leads nowhere else.
 #[derive(Debug, Clone)]
 pub struct Folder {
     fd: Arc<OwnedFd>,
@@ -61,7 +61,7 @@ impl Folder {
         Ok(Self { fd: Arc::new(folder.into()), shown: path.to_owned() })
     }
 
-    /// Opens a folder to write files into, which nobody need be able to list.
+    /// Opens a folder to write files into, which need not be readable.
     ///
     /// # Errors
     /// When there is none or it is closed to us.
@@ -105,7 +105,7 @@ impl Folder {
     /// Returns the entry under this name, opened once.
     ///
     /// # Errors
-    /// When it can't be opened; [`io::ErrorKind::NotFound`] when it has gone.
+    /// When it can't be opened; [`io::ErrorKind::NotFound`] when it was removed.
     pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
         let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | CLOSED, Mode::empty()) {
             Ok(fd) => File::from(fd),
@@ -226,13 +226,13 @@ impl Folder {
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
     }
 
-    /// Returns a path that leads to this very folder as long as it is open, wherever it lies by now.
+    /// Returns a path that leads to this very folder as long as it is open, wherever it is by now.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         PathBuf::from(format!("/proc/self/fd/{}", self.fd.as_raw_fd()))
     }
 
-    /// Returns the folder under a path of names, to look into or to write into.
+    /// Returns the folder under a path of names, to read it or to write into it.
     pub(crate) fn beneath(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
@@ -251,7 +251,7 @@ impl Folder {
         Ok(openat(&*above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
     }
 
-    /// Returns the folder that the last name of a path lies in, and that name.
+    /// Returns the folder of the last name of a path, and that name.
     fn above<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
         let (folder, last) = self.names_of(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
@@ -300,8 +300,8 @@ pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
     }
 }
 
-/// Opens the regular file at `path` once, without waiting, and says how long it is. A link at its end is followed only
-/// when `follow` says so; how many names the file has does not matter.
+/// Opens the regular file at `path` once, without waiting, and returns its length. A link at its end is followed only
+/// with `follow`; the number of the file's names does not matter.
 ///
 /// # Errors
 /// When it is missing, not a regular file, or closed to us.

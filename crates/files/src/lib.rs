@@ -1,12 +1,11 @@
 //! The one way to files.
 //!
 //! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. Here a pipe without
-//!   a
-//!   reader is an error at once, one without a writer after a few seconds, and where a file is expected, at once.
+//!   a reader is an error immediately, one without a writer after a few seconds; if a file is expected, immediately.
 //! - **Nothing is read without a limit.** A device, a file that grows or one full of holes ends at the limit.
 //! - **No link is followed beneath a [`Folder`]**, neither to read nor to write: a user who fills a folder, or fills it
-//!   meanwhile, leads nobody elsewhere.
-//! - **What is written appears whole** ([`Replacement`]), in place of whatever has the name.
+//!   meanwhile, can't redirect it.
+//! - **What is written appears whole** ([`Replacement`]), and replaces a file of the same name.
 //!
 //! ```
 //! use fosssim_files::Place;
@@ -83,7 +82,7 @@ pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> 
     Ok(first)
 }
 
-/// Reads a whole file that somebody names, of a limited number of bytes; a pipe is read, too, and links are followed.
+/// Reads a whole file that a user names, of a limited number of bytes; a pipe is read, too, and links are followed.
 ///
 /// # Errors
 /// When it can't be read, is a folder, or is larger.
@@ -125,7 +124,7 @@ const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 /// Returns a reader that waits for the bytes of a pipe's writer, but not for a writer that never comes.
 ///
 /// # Errors
-/// When nobody writes within five seconds, or the pipe can't be read.
+/// When nothing is written within five seconds, or the pipe can't be read.
 pub fn patient(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));

@@ -1,4 +1,4 @@
-//! Places in a folder of results: somebody else named the folder, and we named everything below it.
+//! Places in a folder of results: a user named the folder, and we named everything below it.
 use super::{FileError, Folder, Replacement, error::escaped};
 use std::{
     ffi::OsStr,
@@ -7,7 +7,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A file or a folder below a folder that somebody named. The folder may be reached over links; below it no link is
+/// A file or a folder below a folder that a user named. The folder may be reached over links; below it no link is
 /// followed, no matter who made it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
@@ -16,13 +16,13 @@ pub struct Place {
 }
 
 impl Place {
-    /// Creates the place of these names, with `/` between them, below the folder; below the working folder where that
+    /// Creates the place with these names, with `/` between them, below the folder; below the working folder where that
     /// is empty.
     pub fn new(folder: impl Into<PathBuf>, below: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), below: below.into() }
     }
 
-    /// Returns a place in this one.
+    /// Returns a place below this one.
     #[must_use]
     pub fn join(&self, name: impl AsRef<Path>) -> Self {
         Self { folder: self.folder.clone(), below: self.below.join(name) }
@@ -34,7 +34,7 @@ impl Place {
         if self.below.as_os_str().is_empty() { self.folder.clone() } else { self.folder.join(&self.below) }
     }
 
-    /// Returns the regular file that lies here, open, with its length.
+    /// Returns the regular file at this place, open, with its length.
     ///
     /// # Errors
     /// As for [`Folder::file`].
@@ -42,7 +42,7 @@ impl Place {
         self.base().and_then(|folder| folder.file(self.below.as_os_str(), most))
     }
 
-    /// Reads the contents of the regular file that lies here.
+    /// Reads the contents of the regular file at this place.
     ///
     /// # Errors
     /// As for [`Folder::read`].
@@ -50,16 +50,16 @@ impl Place {
         self.base().and_then(|folder| folder.read(self.below.as_os_str(), most))
     }
 
-    /// Returns whether a regular file lies here.
+    /// Returns whether there is a regular file at this place.
     #[must_use]
     pub fn is_file(&self) -> bool {
         self.base().is_ok_and(|folder| folder.identity(self.below.as_os_str()).is_some())
     }
 
-    /// Opens this place as a folder, made with all folders above it where there is none.
+    /// Opens this place as a folder; it is made, with all folders above it, if there is none.
     ///
     /// # Errors
-    /// When it can't be made, or something else lies in the way: a link, for example.
+    /// When it can't be made, or something else is in the way: a link, for example.
     pub fn make_folder(&self) -> io::Result<Folder> {
         self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
             let inner = folder.make_folder(name);
@@ -67,7 +67,7 @@ impl Place {
         })
     }
 
-    /// Returns a file that will lie here when it is finished. Folders above it are made.
+    /// Returns a file that will be at this place when it is finished. Folders above it are made.
     ///
     /// # Errors
     /// As for [`Place::make_folder`], and when no file can be made there.
@@ -86,7 +86,7 @@ impl Place {
         file.finish()
     }
 
-    /// Removes the file or link that lies here; that there is none is no error.
+    /// Removes the file or link at this place; a missing one is no error.
     ///
     /// # Errors
     /// When it can't be removed.
@@ -99,7 +99,7 @@ impl Place {
         }
     }
 
-    /// Returns the names of the entries; none where there is no folder.
+    /// Returns the names of the entries; none if there is no folder.
     ///
     /// # Errors
     /// When it can't be read, or is reached by a link.
@@ -111,7 +111,7 @@ impl Place {
         }
     }
 
-    /// Returns the folder that lies here.
+    /// Returns the folder at this place.
     ///
     /// # Errors
     /// When there is none, or it is reached by a link.

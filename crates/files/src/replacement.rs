@@ -1,4 +1,4 @@
-//! Files that appear whole: written beside their place under a name that nobody asks for, and renamed.
+//! Files that appear whole: written next to their place under another name, and renamed.
 use super::folder::{Folder, single};
 use rustix::{
     fs::{AtFlags, Mode, OFlags, openat, renameat, unlinkat},
@@ -15,13 +15,13 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-/// How the names of unfinished files begin.
+/// The beginning of unfinished files' names.
 pub const UNFINISHED: &str = ".fosssim-oracle-";
 
 /// Names of unfinished files that are tried.
 const TRIES: u32 = 100;
 
-/// A file that is being written. It takes its name with [`Replacement::finish`], and is gone without.
+/// A file that is being written. It gets its name with [`Replacement::finish`], and is removed without.
 #[derive(Debug)]
 pub struct Replacement {
     folder: Folder,
@@ -44,7 +44,7 @@ impl Replacement {
                 Ok(fd) => {
                     let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };
                     if let Some(mode) = mode {
-                        // The mode of a new file loses what the mask forbids; that of a replaced one must stay.
+                        // The mode of a new file loses what the mask forbids; the mode of a replaced one must stay.
                         made.file.set_permissions(Permissions::from_mode(mode))?;
                     }
                     return Ok(made);
@@ -59,7 +59,7 @@ impl Replacement {
         Err(problem.into())
     }
 
-    /// Returns where the bytes lie before the file is finished, as its folder was called when it was opened.
+    /// Returns the place of the bytes before the file is finished, with the folder's path from when it was opened.
     #[must_use]
     pub fn unfinished(&self) -> PathBuf {
         self.folder.shown().join(&self.unfinished)
@@ -118,7 +118,7 @@ impl Folder {
 impl Drop for Replacement {
     fn drop(&mut self) {
         if !self.finished {
-            // A file that stays behind is hidden and of no use to anybody.
+            // A file that stays behind is hidden and useless.
             let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
         }
     }

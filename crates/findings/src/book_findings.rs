@@ -6,7 +6,7 @@ use super::{counts::FindingCounts, finding::Finding};
 pub struct BookFindings {
     /// Counts per kind of finding.
     pub counts: FindingCounts,
-    /// Steps with at least one finding; the initial record is not one.
+    /// Steps with at least one finding; the initial record is not a step.
     pub wrong_steps: u64,
     /// The first finding of each kind that occurred, in the order of [`FindingKind::ALL`](super::FindingKind::ALL).
     pub examples: Vec<Finding>,
@@ -25,7 +25,7 @@ impl BookFindings {
         }
     }
 
-    /// Brings the examples into their order, when all are there.
+    /// Sorts the examples, once all of them are there.
     pub fn conclude(&mut self) {
         self.examples.sort_by_key(Finding::kind);
     }

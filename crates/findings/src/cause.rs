@@ -1,4 +1,4 @@
-//! Where the two rule books differ about a trace: which rule of the original is the cause.
+//! The rules of the original that make the two rule books differ about a trace.
 //!
 //! The original's rules are written in oracle-behavior.md 4 to 6, and why they can't be trusted in numerics.md 1.
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ fosssim_num::closed_set! {
         DroppedCoefficients =
             "the original compares degrees after leading coefficients below an absolute 1e-12 have been dropped: a \
              factor or a rounding moves them across that bound",
-        /// Parity fails: a polynomial of round-off is compared with one that vanishes.
+        /// Parity fails: a polynomial of round-off is compared with zero.
         VanishingPolynomial =
             "the original treats a polynomial below an absolute 1e-10 as zero, and its round-off elsewhere as wrong",
         /// Parity fails: the course's slip in the approach polynomial.
@@ -35,9 +35,9 @@ fosssim_num::closed_set! {
         /// Parity fails: a decision that round-off may flip.
         BorderlineDecision =
             "the original knows one outcome of a decision that round-off may flip, and the trace has the other",
-        /// Parity passes: it takes over the first record.
+        /// Parity passes: the original never checks the first record.
         FirstRecord = "the original never checks the first record against the scene",
-        /// Parity passes: it takes over mid records.
+        /// Parity passes: the original takes over mid records.
         MidRecord = "the original never checks a step's mid record",
         /// Parity passes: it does not compare times of impact.
         ContactTime = "the original does not compare times of impact",
@@ -46,13 +46,13 @@ fosssim_num::closed_set! {
         /// Parity passes: it decides with its own polynomials, not with the trace's.
         OwnPolynomials =
             "the original decides with its own polynomials, so it does not see what follows from the trace's",
-        /// Parity passes: it does not ask whether the course's library can have written a polynomial.
+        /// Parity passes: the original does not check whether the course's library can have written a polynomial.
         ImpossibleLog = "the original does not check whether the course's library can have written the log",
         /// Parity passes: values that are not numbers pass.
         NotANumber = "the original accepts values that are not numbers",
-        /// Parity passes: what is below an absolute bound passes, however wrong.
+        /// Parity passes: errors below an absolute bound pass, however wrong.
         SmallErrors = "the original compares at absolute bounds: what is below them passes, however wrong for its size",
-        /// Parity passes: it does not look behind the last record.
+        /// Parity passes: the original reads no bytes behind the last record.
         TrailingBytes = "the original does not check what follows the last record",
         /// Parity passes: it reads on over damage.
         Damage = "the original skips damage silently",
@@ -60,7 +60,7 @@ fosssim_num::closed_set! {
 }
 
 impl Cause {
-    /// Returns whether the original fails what the fair rules accept; else it passes what they reject.
+    /// Returns whether the original rejects what the fair rules accept; else it accepts what they reject.
     #[must_use]
     pub const fn original_fails(self) -> bool {
         (self as u8) <= (Self::BorderlineDecision as u8)

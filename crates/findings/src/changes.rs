@@ -24,7 +24,7 @@ impl From<&Grade> for EarlierGrade {
 /// The changes of a submission since an earlier grading, in the groups that its grade holds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Changes<'a> {
-    /// Points of these groups in the earlier grading, without extra ones; `None` where it had none.
+    /// Points of these groups in the earlier grading, without extra ones; `None` if it had none.
     pub points: Option<f64>,
     /// Points that could be reached in them.
     pub max_points: f64,
@@ -37,8 +37,8 @@ pub struct Changes<'a> {
 }
 
 impl Grade {
-    /// Returns the changes since the earlier grading, where there is one. Scenes that were not run, now or then, have
-    /// not changed. Of groups that are left out of this grade it says nothing.
+    /// Returns the changes since the earlier grading, if there is one. Scenes that were not run, now or then, have not
+    /// changed. Groups that are left out of this grade are not compared.
     #[must_use]
     pub fn changes(&self) -> Option<Changes<'_>> {
         let before = self.before.as_ref()?;

@@ -1,9 +1,9 @@
-//! How often something was found.
+//! Counts of findings.
 use super::finding::FindingKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// How often each kind of finding occurred.
+/// The number of findings of each kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(into = "BTreeMap<FindingKind, u64>", from = "BTreeMap<FindingKind, u64>")]
 pub struct FindingCounts([u64; FindingKind::ALL.len()]);

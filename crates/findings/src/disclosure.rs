@@ -1,4 +1,4 @@
-//! The part of a judged trace that may be told: findings as values. [`Hints`](super::Hints) cut it down to what a
+//! The part of a judged trace that a report may show: findings as values. [`Hints`](super::Hints) cut it down to what a
 //! reader may know.
 use super::{
     Book, Damage, FindingCounts, Outcome, Residuals, Rules, Ruling,
@@ -6,14 +6,14 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The part of a trace that may be told. Hints that tell nothing make none of it.
+/// The part of a trace that a report may show. With the lowest hints there is none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Disclosure {
     /// The book whose verdict counts.
     pub official: Book,
     /// The findings of the original's rules.
     pub parity: DisclosedBook,
-    /// The findings of the fair rules, if they were asked.
+    /// The findings of the fair rules, if requested.
     pub fair: Option<DisclosedBook>,
     /// The residuals (oracle-behavior.md 6.3), which are values: with full hints only.
     pub residuals: Option<Residuals>,
@@ -47,7 +47,7 @@ impl Disclosure {
         }
     }
 
-    /// Returns the findings of the book whose verdict counts; the original's, if the fair one was not asked.
+    /// Returns the findings of the book whose verdict counts; the original's, if the fair one was not requested.
     #[must_use]
     pub fn official(&self) -> &DisclosedBook {
         match (self.official, &self.fair) {
@@ -64,7 +64,7 @@ pub struct DisclosedBook {
     pub ruling: Ruling,
     /// Steps with at least one finding.
     pub wrong_steps: u64,
-    /// How often each kind of finding occurred.
+    /// The number of findings of each kind.
     pub counts: FindingCounts,
     /// The very first finding.
     pub first_divergence: Option<DisclosedFinding>,
@@ -72,16 +72,16 @@ pub struct DisclosedBook {
     pub examples: Vec<DisclosedFinding>,
 }
 
-/// The part of one finding that may be told.
+/// The part of one finding that a report may show.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum DisclosedFinding {
-    /// Where it is and of what kind, without values.
+    /// The place and the kind of the finding, without values.
     Place {
         /// The step, from 1; 0 for the first record.
         step: u32,
         /// The finding's kind.
         kind: FindingKind,
-        /// Where in the step.
+        /// The place in the step.
         place: FindingPlace,
     },
     /// Everything.

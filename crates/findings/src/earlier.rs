@@ -1,4 +1,4 @@
-//! The grade of an earlier grading, as far as a later one is compared with it.
+//! The grade of an earlier grading, reduced to what a later one is compared with.
 use serde::{Deserialize, Serialize};
 
 /// The part of an earlier grade with which a later one is compared. It reads `grade --format json` of any version.

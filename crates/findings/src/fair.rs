@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairVerdict {
-    /// Nothing is wrong.
+    /// All rules are met.
     Accepted,
     /// Something is.
     Rejected,
@@ -16,7 +16,7 @@ pub enum FairVerdict {
     None,
 }
 
-/// The reason why a trace is refused as a whole.
+/// The reason why a trace is rejected as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
@@ -34,7 +34,7 @@ pub enum FairRefusal {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// Nothing tells them apart.
+    /// Both are possible: no finding distinguishes them.
     #[default]
     Either,
     /// The course's formula, with its slip in t^3.
@@ -56,7 +56,7 @@ pub struct Borderline {
     pub collides: bool,
 }
 
-/// The largest shares of their tolerances that were used by what is right, 0 to 1; 0 where nothing differed.
+/// The largest shares of their tolerances that right values used, 0 to 1; 0 where nothing differed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Shares {
     /// Polynomial coefficients.
@@ -78,7 +78,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Takes the larger one of each.
+    /// Takes the larger share of each.
     pub fn widen(&mut self, other: &Self) {
         self.coefficient = self.coefficient.max(other.coefficient);
         self.normal = self.normal.max(other.normal);
@@ -87,23 +87,23 @@ impl Shares {
     }
 }
 
-/// Everything that the fair rules say about a trace.
+/// The result of the fair rules for a trace.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
     /// The verdict.
     pub verdict: FairVerdict,
-    /// The reason why the trace is refused as a whole, whatever its steps hold.
+    /// The reason why the trace is rejected as a whole, whatever its steps hold.
     pub refusal: Option<FairRefusal>,
     /// The findings by the fair rules.
     pub findings: BookFindings,
     /// The first step that was not judged any more, because that would have taken too much work, or because the scene
     /// itself has no result there.
     pub given_up: Option<u32>,
-    /// How many decisions about pairs the trace holds, in all steps and passes.
+    /// The number of decisions about pairs in the trace, in all steps and passes.
     pub decisions: u64,
     /// The number of borderline decisions that the trace has the other way.
     pub borderline: u64,
-    /// The first ones.
+    /// The first of these decisions.
     pub borderline_examples: Vec<Borderline>,
     /// The factor of all polynomials of all kinds as an interval, where it is not 1.
     pub factor: Option<[f64; 2]>,

@@ -1,4 +1,4 @@
-//! Findings: what is wrong with a step, and where.
+//! Findings: the faults of a step, and their places.
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, StepError},
     trace::LoggedImpulse,
@@ -33,11 +33,11 @@ fosssim_num::closed_set! {
         ContactTime = "wrong time of impact",
         /// Fair rules: a collision is logged more than once.
         RepeatedCollision = "repeated collision",
-        /// Fair rules: a later detection pass of the step looked at wrong positions.
+        /// Fair rules: a later detection pass of the step used wrong positions.
         PassPositions = "wrong positions within the step",
         /// Fair rules: the two records of a step contradict each other.
         RecordsDiffer = "contradicting records",
-        /// Fair rules: the trace holds what the course's library can't have written.
+        /// Fair rules: the trace holds a log that the course's library can't have written.
         ImpossibleLog = "impossible log",
         /// Fair rules: coefficients that were lost as too small change a decision.
         TrimmedDecision = "decision changed by lost coefficients",
@@ -51,8 +51,8 @@ fosssim_num::closed_set! {
 }
 
 impl FindingKind {
-    /// Returns the original's message for it; positions and velocities have none, they only raise residuals, and what
-    /// it does not look at has none either.
+    /// Returns the original's message for it; `None` for positions and velocities, which only raise residuals, and for
+    /// what the original does not check.
     #[must_use]
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
@@ -73,7 +73,7 @@ impl FindingKind {
 pub struct Finding {
     /// The step, from 1.
     pub step: u32,
-    /// The frame of the trace that holds what was compared, from 0 (the initial record).
+    /// The frame of the trace that was compared, from 0 (the initial record).
     pub frame: u64,
     /// The fault, with its values.
     pub detail: FindingDetail,
@@ -135,7 +135,7 @@ pub enum FindingDetail {
         expected: usize,
         /// Logged by the trace.
         actual: usize,
-        /// Polynomials of one detection pass over all pairs, for telling how many passes are too many or too few.
+        /// Polynomials of one detection pass over all pairs, with which missing or surplus passes are counted.
         per_pass: usize,
     },
     /// Another number of detection passes in one part of the step (fair rules).
@@ -230,7 +230,7 @@ pub enum FindingDetail {
         actual: LoggedImpulse,
     },
     /// A polynomial of a pair that a response or the failsafe has moved fits neither (fair rules). It may be right:
-    /// what is wrong is where the particles are by then.
+    /// then the particles' positions are wrong.
     PassPositions {
         /// The first such polynomial.
         place: PolynomialPlace,
@@ -243,8 +243,8 @@ pub enum FindingDetail {
     /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's
     /// library drops (fair rules).
     ImpossibleLog,
-    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and
-    /// this decision hangs on them (fair rules).
+    /// The trace's polynomials lack coefficients, as if the course's library had dropped them because of a factor, and
+    /// this decision depends on them (fair rules).
     TrimmedDecision {
         /// The pair's first polynomial.
         place: PolynomialPlace,
@@ -326,7 +326,7 @@ impl FindingDetail {
         }
     }
 
-    /// Returns the pair that it is about; none where it is about none, or the trace names no such pair.
+    /// Returns the pair that it is about; `None` if it is about no pair, or the trace names no such pair.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         match (self, self.place()) {
@@ -347,7 +347,7 @@ impl FindingDetail {
     }
 }
 
-/// Where in its step a finding lies.
+/// The place of a finding in its step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FindingPlace {
     /// In no place that could be named.

@@ -17,7 +17,7 @@ use std::{collections::BTreeMap, ops::Deref, time::Duration};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
-    /// Everybody, at once.
+    /// Everybody sees it immediately.
     Visible,
     /// Staff only.
     Hidden,
@@ -27,7 +27,7 @@ pub enum Visibility {
     AfterPublished,
 }
 
-/// A course's own words on a mistake or a group: reports show them beside ours.
+/// A course's own words on a mistake or a group: reports show them next to ours.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct CourseNote {
@@ -43,7 +43,7 @@ pub struct CourseNote {
 }
 
 impl CourseNote {
-    /// Writes it in a line: a report says how text and an address are written there.
+    /// Writes the note in one line: the report decides how text and an address are written.
     pub fn line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
         let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));
@@ -59,7 +59,8 @@ impl std::fmt::Display for CourseNote {
     }
 }
 
-/// A grade names no more submissions with the same program: a class of equal programs must not grow by its square.
+/// The greatest number of submissions with the same program that a grade names: output for a class of equal programs
+/// must not grow by its square.
 const MOST_NAMED: usize = 20;
 
 /// The grade of one submission on one suite.
@@ -69,19 +70,19 @@ pub struct Grade {
     pub submission: String,
     /// The suite's name.
     pub suite: String,
-    /// The rule books that were asked; verdicts and points are by the official one.
+    /// The requested rule books; verdicts and points are by the official one.
     pub rules: Rules,
     /// The worst verdict of the groups that count.
     pub verdict: Verdict,
-    /// Points reached, without extra ones; `None` when the grader failed or was stopped before the last scene, which is
-    /// nobody's zero.
+    /// Points reached, without extra ones; `None` when the grader failed or was stopped before the last scene; no
+    /// student gets a zero for that.
     pub points: Option<f64>,
-    /// Points that can be reached, without extra ones.
+    /// The greatest number of points, without extra ones.
     pub max_points: f64,
     /// Groups in the suite's order.
     pub groups: Vec<GroupGrade>,
-    /// Whether reports for students show of a scene what the program could have chosen, as what it printed: not where
-    /// groups are hidden, unless the suite says so.
+    /// Whether reports for students show what the program could have chosen, as its output. They do not if groups are
+    /// hidden, unless the suite allows it.
     pub shows_output: bool,
     /// The way the build ended, when the suite builds.
     pub build: Option<Build>,
@@ -98,14 +99,14 @@ pub struct Grade {
     /// The common properties of the scenes in which the program crashes or runs into a limit, where hints let them
     /// through.
     pub located: Option<LocatedFailure>,
-    /// The digest of the program; none where there is no program that can be run.
+    /// The digest of the program; `None` if there is no program that can be run.
     pub program: Option<String>,
     /// Other submissions of the class whose programs are equal, byte for byte, at most 20; for staff only.
     pub same_program: Vec<String>,
     /// The earlier grade with which this one is compared.
     #[serde(default)]
     pub before: Option<EarlierGrade>,
-    /// The smallest scene for each cause, where these were asked for.
+    /// The smallest scene for each cause, if requested.
     #[serde(default)]
     pub smallest: Vec<SmallestScene>,
     /// The course's own words on mistakes, by their keys.
@@ -114,7 +115,7 @@ pub struct Grade {
 }
 
 impl Grade {
-    /// Returns the verdict, the points and the maximum that follow from groups. Extra groups do not count beside
+    /// Returns the verdict, the points and the maximum that follow from groups. Extra groups count only if there are no
     /// others.
     #[must_use]
     pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
@@ -128,7 +129,7 @@ impl Grade {
         )
     }
 
-    /// Returns the extra points reached and how many there are; nothing where the suite gives none.
+    /// Returns the extra points reached and their maximum; `None` if the suite gives none.
     #[must_use]
     pub fn extra(&self) -> Option<(f64, f64)> {
         let extra = || self.groups.iter().filter(|group| group.extra);
@@ -225,30 +226,30 @@ impl Grade {
             && self.groups.iter().zip(&other.groups).all(alike)
     }
 
-    /// Returns how many of the results were taken from an earlier run.
+    /// Returns the number of results that were taken from an earlier run.
     #[must_use]
     pub fn taken_over(&self) -> usize {
         self.scenes().filter(|scene| scene.cached).count()
     }
 
-    /// Returns how many scenes the two rule books judge differently.
+    /// Returns the number of scenes that the two rule books judge differently.
     #[must_use]
     pub fn differing(&self) -> usize {
         self.scenes().filter(|scene| scene.differs.is_some()).count()
     }
 
-    /// Returns how many scenes have this verdict.
+    /// Returns the number of scenes with this verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
     }
 }
 
-/// An entry of a class's folder that is not a submission, and why: nobody is left out in silence.
+/// An entry of a class's folder that is not a submission, and the reason: no entry is left out silently.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PassedOver {
-    /// The entry's name, as that of a submission.
+    /// The entry's name, as the name of a submission.
     pub name: String,
     /// Why, in words.
     pub why: String,
@@ -281,9 +282,9 @@ pub struct GroupGrade {
     pub name: String,
     /// The readers who see it.
     pub visibility: Visibility,
-    /// How much students are told of its scenes.
+    /// The hints that students get for its scenes.
     pub hints: Hints,
-    /// Points reached, those for speed included; `None` when a scene or its speed has none.
+    /// Points reached, including those for speed; `None` when a scene or its speed has none.
     pub points: Option<f64>,
     /// Points that can be reached.
     pub max_points: f64,
@@ -309,14 +310,14 @@ pub struct GroupGrade {
 pub struct SceneGrade {
     /// The result.
     pub result: SceneResult,
-    /// Points reached; `None` when the grader failed or did not come to run it, which is nobody's zero.
+    /// Points reached; `None` when the grader failed or did not run it; no student gets a zero for that.
     pub points: Option<f64>,
     /// Points that can be reached.
     pub max_points: f64,
     /// Whether the result was taken from an earlier run.
     pub cached: bool,
-    /// The likely mistakes here, the likeliest first: by what all scenes together say of this one, else by what it says
-    /// alone (made of [`SceneResult::explanations`]). This is what reports tell.
+    /// The likely mistakes here, the likeliest first. They follow from all scenes together if these name one, else from
+    /// this scene alone (made of [`SceneResult::explanations`]). Reports show these.
     pub settled: Vec<Explanation>,
     /// The number of explanations, the first of [`settled`](Self::settled), that all scenes together give.
     pub agreed: usize,

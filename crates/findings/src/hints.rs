@@ -1,17 +1,17 @@
-//! How much a report tells its reader, and what of findings that lets through.
+//! The detail that a report shows its reader, and the parts of findings that remain.
 use super::{
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     finding::Finding,
 };
 use serde::{Deserialize, Serialize};
 
-/// How much a report tells its reader.
+/// The detail that a report shows its reader.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hints {
     /// The verdict only.
     None,
-    /// Where: kind, step, pair and polynomial of the first difference.
+    /// The place: kind, step, pair and polynomial of the first difference.
     Where,
     /// The likely mistake in a sentence, too.
     What,
@@ -20,7 +20,7 @@ pub enum Hints {
 }
 
 impl Hints {
-    /// Returns the level's name in suites, and what it means in a few words.
+    /// Returns the level's name in suites, and its meaning in a few words.
     #[must_use]
     pub const fn describe(self) -> (&'static str, &'static str) {
         match self {
@@ -31,14 +31,14 @@ impl Hints {
         }
     }
 
-    /// Returns whether likely mistakes are told at this level.
+    /// Returns whether likely mistakes are shown at this level.
     #[must_use]
     pub const fn explains(self) -> bool {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Cuts what is known of a trace down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] where
-    /// findings are, and of what kind; there everything.
+    /// Cuts the facts about a trace down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] only the
+    /// places and kinds of findings; there everything.
     #[must_use]
     pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
         match self {
@@ -62,7 +62,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part that may be told of what is told at another level.
+    /// Returns the part that may be shown at both levels.
     #[must_use]
     pub const fn cut(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
         match finding {
@@ -71,7 +71,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part of a finding that may be told: nothing at [`Hints::None`], no values below [`Hints::Full`].
+    /// Returns the part of a finding that may be shown: nothing at [`Hints::None`], no values below [`Hints::Full`].
     #[must_use]
     pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {

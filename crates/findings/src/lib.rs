@@ -2,8 +2,8 @@
 //! results of scenes and grades.
 //!
 //! A fact has one type here, from where it arises to where somebody reads it: `judge` and `mistakes` fill these values,
-//! `grading` keeps them, `report` and `server` read them. They serialize themselves, and read back bit for bit. What
-//! stands in the data of an assignment (known mistakes, formulas, letters) is named by its key.
+//! `grading` keeps them, `report` and `server` read them. They serialize themselves, and read back bit for bit. The
+//! data of an assignment (known mistakes, formulas, letters) are named by their keys.
 //!
 //! A finding in words:
 //!

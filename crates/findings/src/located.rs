@@ -3,7 +3,7 @@ use fosssim_ended::RunEnd;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A kind of event, or one value of one of its properties, by their names.
+/// A kind of event, or a value of one of its properties, by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Content {
     /// The kind of event.
@@ -13,7 +13,7 @@ pub struct Content {
 }
 
 fosssim_num::closed_set! {
-    /// How programs fail.
+    /// The ways in which programs fail.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum FailureKind {
         /// By a signal.
@@ -24,9 +24,9 @@ fosssim_num::closed_set! {
         Time = "run out of time",
         /// By the limit of memory.
         Memory = "need more memory than allowed",
-        /// By a limit of what they may write.
+        /// By a limit of their output.
         Output = "write more than allowed",
-        /// By several of these.
+        /// In several of these ways.
         Several = "crash or run into a limit",
     }
 }
@@ -34,9 +34,9 @@ fosssim_num::closed_set! {
 /// The contents that the failing scenes have in common.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LocatedFailure {
-    /// How it fails.
+    /// The way in which the program fails.
     pub failing: FailureKind,
-    /// The contents of all these scenes, the most general first; the scenes can't tell them apart.
+    /// The contents of all these scenes, the most general first; the scenes can't distinguish them.
     pub contents: Vec<Content>,
     /// The number of scenes in which it fails; all of them contain it.
     pub failed: usize,
@@ -51,7 +51,7 @@ pub struct LocatedFailure {
 }
 
 impl FailureKind {
-    /// Returns how a program failed that ended so; nothing where it ended well, or where that says nothing of it.
+    /// Returns the failure of a program that ended so; `None` if it ended well, or if its end does not show it.
     #[must_use]
     pub const fn from_end(ended: &RunEnd) -> Option<Self> {
         match ended {

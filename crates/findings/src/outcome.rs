@@ -9,11 +9,11 @@ use fosssim_model::{
 /// The reason why grading stopped before its end.
 #[derive(Debug, Clone)]
 pub enum Stop {
-    /// The trace can't be read on; the original says so and stops.
+    /// The trace can't be read further; the original reports that and stops.
     Trace {
         /// The frame that could not be read, from 0.
         frame: u64,
-        /// The step it belongs to; 0 for the initial record.
+        /// The step to which it belongs; 0 for the initial record.
         step: u32,
         /// The reason why it could not be read.
         cause: Unreadable,
@@ -22,19 +22,19 @@ pub enum Stop {
         /// The damage.
         what: Malformation,
     },
-    /// Judging took more work than a trace may ask for; or, by the original's rules, a step has no result.
+    /// Judging took more work than a trace may cause; or, by the original's rules, a step has no result.
     Step(StepError),
 }
 
 /// Damage that the original's reading passes over in silence.
 pub use fosssim_model::trace::TraceError as Damage;
 
-/// Everything that judging one trace yields.
+/// The result of judging one trace.
 #[derive(Debug)]
 pub struct Outcome {
     /// The judgement by the original's rules.
     pub parity: parity::Judgement,
-    /// The judgement by the fair rules, if they were asked.
+    /// The judgement by the fair rules, if requested.
     pub fair: Option<Box<fair::Judgement>>,
     /// Steps that were judged.
     pub steps_judged: u32,
@@ -47,7 +47,7 @@ pub struct Outcome {
     /// The first damage that the original's reading passes over in silence, see [`Damage`].
     pub damage: Option<Damage>,
     /// Judged steps whose records are damaged, or come after one that is. Their findings count for the original, but
-    /// say nothing about the program that wrote the trace: they are no wrong steps, and no example is among them.
+    /// prove nothing about the program that wrote the trace: they are no wrong steps, and no example is among them.
     pub damaged_steps: u32,
     /// Whether bytes follow the last record; the original never reads them.
     pub trailing_bytes: bool,

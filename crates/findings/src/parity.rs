@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 pub enum Overall {
     /// All five conditions hold.
     Passed,
-    /// One of them does not.
+    /// A residual or a message does not pass.
     Failed,
     /// Grading did not come to its end; there is no verdict.
     #[default]
@@ -52,7 +52,7 @@ impl Residuals {
     }
 }
 
-/// Everything that the original's rules say about a trace.
+/// The result of the original's rules for a trace.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
     /// The verdict.
@@ -63,8 +63,8 @@ pub struct Judgement {
     pub collisions_passed: Option<bool>,
     /// The findings.
     pub findings: BookFindings,
-    /// The first step without a result, where the original computes without end or gives up; nothing is judged from
-    /// there on.
+    /// The first step without a result, in which the original computes without end or gives up; later steps are not
+    /// judged.
     pub endless: Option<StepError>,
 }
 

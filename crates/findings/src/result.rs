@@ -28,9 +28,9 @@ pub struct SceneResult {
     pub reason: Reason,
     /// The way the program ended, if it was run.
     pub ended: Option<RunEnd>,
-    /// Where the two rule books come to different verdicts about the trace: the rule of the original that is the cause.
+    /// The rule of the original that makes the two rule books come to different verdicts about the trace, if they do.
     pub differs: Option<Cause>,
-    /// The part of the trace that may be told.
+    /// The part of the trace that a report may show.
     pub disclosure: Option<Disclosure>,
     /// Likely mistakes, the likeliest first.
     pub explanations: Vec<Explanation>,
@@ -48,7 +48,7 @@ pub struct SceneResult {
     pub stderr: String,
     /// The name of the card that was drawn of its trace.
     pub card: Option<String>,
-    /// The name of the card that students see instead, where hints let them see less and somebody asked for it.
+    /// The name of the card for students, if hints let them see less and such a card was requested.
     pub card_for_students: Option<String>,
 }
 
@@ -76,8 +76,8 @@ impl SceneResult {
     }
 
     /// Leaves the verdict, and nothing else that the program could have chosen: a program that was run on a hidden
-    /// scene could tell of it by an exit code, a signal, the first wrong step, a picture, its time or its memory. What
-    /// is the same in every scene stays, and so do names of likely mistakes, of which a report tells few.
+    /// scene could reveal it by an exit code, a signal, the first wrong step, a picture, its time or its memory. What
+    /// is the same in every scene stays, and so do names of likely mistakes, of which a report shows few.
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
             Reason::Right | Reason::Wrong(WrongTrace::Nothing) | Reason::NoTrace => true,
@@ -96,7 +96,7 @@ impl SceneResult {
     }
 }
 
-/// The measurements of a run; all else that a result says follows from the program and the scene.
+/// The measurements of a run; all other values of a result follow from the program and the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Measurements {
     /// Processor time of the program.
@@ -120,7 +120,7 @@ pub enum Reason {
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
-    /// The way the program ended ([`SceneResult::ended`]), and how far it came.
+    /// The way in which the program ended ([`SceneResult::ended`]), and its progress.
     Program(ProgramProgress),
     /// The scene was left out.
     LeftOut(NotRunReason),
@@ -136,10 +136,10 @@ pub enum Reason {
     Failed(Failure),
 }
 
-/// In what a trace is wrong, as far as hints tell it.
+/// The fault of a trace, with what hints allow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WrongTrace {
-    /// Hints tell nothing.
+    /// Hints hide the fault.
     Untold,
     /// In that nothing is logged: no polynomial and no collision.
     Nothing,
@@ -149,7 +149,7 @@ pub enum WrongTrace {
     Steps {
         /// The number of wrong steps.
         wrong: u64,
-        /// The first one.
+        /// The first such step.
         first: u32,
         /// The first fault there.
         kind: FindingKind,
@@ -173,13 +173,13 @@ pub enum BadTrace {
     Unreadable {
         /// The frame, from 0.
         frame: u64,
-        /// The step it belongs to; 0 for the first record.
+        /// The step to which it belongs; 0 for the first record.
         step: u32,
         /// Which part of the record, or why not.
         cause: Unreadable,
         /// Byte offset of the damage.
         offset: u64,
-        /// The damage, as the reader tells it.
+        /// The damage that the reader reported.
         damage: Malformation,
     },
     /// The trace holds the states of all steps, and nothing of collisions.
@@ -190,7 +190,7 @@ pub enum BadTrace {
     TrailingBytes,
 }
 
-/// How far a program came, and the limit that it was stopped at, if it was.
+/// The progress of a program, and the limit that stopped it, if one did.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ProgramProgress {
     /// The limit.
@@ -202,7 +202,7 @@ pub struct ProgramProgress {
 /// A limit of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Limit {
-    /// The time: on the processor or on the clock, as the program's end says.
+    /// The time on the processor or on the clock; the program's end says which.
     Time(Duration),
     /// The memory, in bytes.
     Memory(u64),
@@ -211,7 +211,7 @@ pub enum Limit {
 /// The reason why a scene is not run any more.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
-    /// This number of scenes in a row ran into a limit of time, memory or output; with the worst verdict of these.
+    /// This number of scenes in a row ran into a limit of time, memory or output; the verdict is the worst of theirs.
     Limits {
         /// How many.
         scenes: u32,
@@ -220,7 +220,7 @@ pub enum NotRunReason {
     },
     /// The submission has used up its time.
     Total(Duration),
-    /// A scene is not accepted, and somebody has asked to stop there.
+    /// A scene is not accepted, and the grading was to stop there.
     FailFast,
 }
 
@@ -229,7 +229,7 @@ pub enum NotRunReason {
 pub enum UnusableReason {
     /// The program can't be started.
     CouldNotStart(StartProblem),
-    /// There is no program of the name that is looked for.
+    /// There is no program of the expected name.
     NoProgram {
         /// That name.
         sought: String,
@@ -249,7 +249,7 @@ pub enum FolderContents {
     Nothing,
     /// The folder holds other files and folders.
     Others {
-        /// The first ones by name; folders end in a slash.
+        /// The first names in order; folders end in a slash.
         names: Vec<String>,
         /// The number of them besides.
         more: usize,
@@ -261,7 +261,7 @@ pub enum FolderContents {
 /// A failure of the grader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
-    /// The machine, or what the grader was given, in its own words.
+    /// A fault of the machine, or of the grader's input, in its own words.
     Machine(String),
     /// Itself: a panic, with its words and its place in the source.
     Panic {
@@ -296,7 +296,7 @@ pub enum SavedTrace {
     Lost {
         /// The folder for it.
         folder: PathBuf,
-        /// Why, as the operating system says it.
+        /// The reason that the operating system gives.
         error: String,
     },
 }

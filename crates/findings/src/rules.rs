@@ -1,4 +1,4 @@
-//! Which rule book is asked, which one is official, and what each says about one trace in the same words.
+//! The rule books that are used, the official one, and the result of each in the same words.
 //!
 //! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
 use super::{
@@ -21,15 +21,15 @@ pub enum Book {
 }
 
 fosssim_num::closed_set! {
-    /// Which rule books are asked.
+    /// The rule books that judge a trace.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "lowercase")]
     pub enum Rules {
         /// The original's alone.
         Parity = "parity",
-        /// The fair ones; theirs is the official verdict.
+        /// The fair rules, which give the official verdict.
         Fair = "fair",
-        /// Both; the original's is the official verdict, and a report says where the fair ones differ.
+        /// Both books: the original's gives the official verdict, and a report says where the fair rules differ.
         #[default]
         Both = "both",
     }
@@ -45,7 +45,7 @@ impl Rules {
         }
     }
 
-    /// Returns whether the fair rules are asked at all.
+    /// Returns whether the fair rules judge, too.
     #[must_use]
     pub const fn ask_fair(self) -> bool {
         !matches!(self, Self::Parity)
@@ -56,19 +56,19 @@ fosssim_num::closed_set! {
     /// The verdict of one book, in words that both share.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Ruling {
-        /// Everything is right.
+        /// The trace meets all rules.
         Accepted = "accepted",
-        /// Nothing is wrong so far, and judging was given up before the end.
+        /// No fault was found, and judging stopped before the end.
         Undecided = "undecided",
         /// The trace is wrong.
         WrongAnswer = "wrong answer",
-        /// The trace can't be read to its end; by the fair rules also: it is damaged, or goes on after its end.
+        /// The trace can't be read to its end. By the fair rules it may also be damaged, or go on after its end.
         BadTrace = "bad trace",
     }
 }
 
 impl Outcome {
-    /// Returns the verdict by a book; by the fair one the original's, if the fair one was not asked.
+    /// Returns the verdict by a book; the original's if the fair rules did not judge.
     #[must_use]
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
@@ -90,9 +90,9 @@ impl Outcome {
         }
     }
 
-    /// Returns how many steps are right by a book: all of them only where the trace is accepted. What is wrong in no
-    /// step, such as the first record or small errors that add up, counts as one; and what the original reads over in
-    /// silence is right for it only where it accepts the whole.
+    /// Returns the number of steps that are right by a book: all of them only if the trace is accepted. A fault of no
+    /// single step, such as the first record or small errors that add up, counts as one step. Faults that the original
+    /// ignores silently are right for it only if it accepts the whole trace.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
@@ -110,7 +110,7 @@ impl Outcome {
         self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
     }
 
-    /// Returns how many steps a book has judged.
+    /// Returns the number of steps that a book has judged.
     #[must_use]
     pub fn judged_by(&self, book: Book) -> u32 {
         let end = match (book, &self.fair) {
@@ -120,7 +120,7 @@ impl Outcome {
         end.map_or(self.steps_judged, |step| step - 1)
     }
 
-    /// Returns the findings of a book; by the fair one the original's, if the fair one was not asked.
+    /// Returns the findings of a book; the original's if the fair rules did not judge.
     #[must_use]
     pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {
@@ -146,7 +146,7 @@ mod tests {
         assert!(!Rules::Parity.ask_fair());
     }
 
-    /// Points may follow from the steps: what is not accepted never has them all.
+    /// Points may follow from the steps: a trace that is not accepted never has all of them.
     #[test]
     fn a_wrong_answer_has_a_wrong_step() {
         let mut outcome = Outcome::empty(3);

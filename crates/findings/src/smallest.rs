@@ -15,19 +15,19 @@ pub struct SmallestScene {
     pub bodies: usize,
     /// The number of steps.
     pub steps: u32,
-    /// How often the program was run.
+    /// The number of runs of the program.
     pub runs: u32,
     /// Whether no single attempt makes it smaller; else the search was stopped.
     pub is_minimal: bool,
     /// The way the program ended, where it did not end well.
     pub note: Option<String>,
-    /// The first thing that is wrong, as far as it may be told.
+    /// The first thing that is wrong, if hints show it.
     pub first: Option<DisclosedFinding>,
     /// Likely mistakes, the cause first.
     pub explanations: Vec<Explanation>,
     /// The values that differ, in words; with full hints only.
     pub differs: Option<String>,
-    /// The reference's computation for the pair that tells most; with full hints only.
+    /// The reference's computation for the most informative pair; with full hints only.
     pub by_hand: Option<HandComputation>,
     /// The card that a page shows of it.
     pub card: Option<String>,
@@ -45,13 +45,13 @@ pub struct HandComputation {
 }
 
 impl SmallestScene {
-    /// Returns the measure by which one is smaller than another.
+    /// Returns the measure by which a scene is smaller than another.
     #[must_use]
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
     }
 
-    /// Cuts it down to what hints let students know, but for its explanations.
+    /// Cuts it down to what hints allow for students, except for its explanations.
     pub fn cut(&mut self, hints: Hints) {
         if hints < Hints::Full {
             (self.differs, self.by_hand) = (None, None);

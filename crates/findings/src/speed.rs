@@ -1,5 +1,5 @@
-//! Points for speed: the processor time of a submission beside that of the reference program. Both run in turn, on one
-//! machine. It is never the time on the clock, which other programs change.
+//! Points for speed: the processor time of a submission compared with that of the reference program. Both run in turn,
+//! on one machine. It is never the time on the clock, which other programs change.
 use super::{
     result::SceneResult,
     timing::{TimedRun, Timing},
@@ -8,16 +8,16 @@ use super::{
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// How a group of a suite marks speed.
+/// The way in which a group of a suite marks speed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedMarking {
-    /// The greatest number of points, beside those for scenes.
+    /// The greatest number of points, in addition to those for scenes.
     pub points: f64,
     /// The ratio to the reference's time up to which all points are given.
     pub full_at: f64,
     /// The ratio from which on there are none; greater than `full_at`. Between them points fall linearly.
     pub none_at: f64,
-    /// How often each scene is timed.
+    /// The number of timed runs of each scene.
     pub runs: u32,
 }
 
@@ -32,22 +32,22 @@ impl SpeedMarking {
 /// The points of a group for speed, and where they come from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedGrade {
-    /// How it is marked.
+    /// The rules by which it is marked.
     pub marking: SpeedMarking,
-    /// Points reached; `None` when the grader could not measure, which is nobody's zero.
+    /// Points reached; `None` when the grader could not measure. No student gets a zero for that.
     pub points: Option<f64>,
-    /// Where they come from.
+    /// The origin of the points.
     pub source: SpeedSource,
 }
 
-/// Where points for speed come from.
+/// The origin of points for speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SpeedSource {
     /// Not all scenes of the group are accepted: being right counts before being fast.
     NotAccepted,
     /// All scenes were timed.
     Measured(SpeedRatio),
-    /// A timed run of this scene had another verdict than the graded one.
+    /// A timed run of this scene had another verdict than the graded run.
     Failed {
         /// The scene.
         scene: String,
@@ -56,7 +56,7 @@ pub enum SpeedSource {
     },
     /// Grading was stopped before, or the grader failed.
     Unmeasured,
-    /// Kept from students: a program could tell of a hidden scene by its time.
+    /// Points that students do not see: a program could reveal a hidden scene by its time.
     Withheld,
 }
 

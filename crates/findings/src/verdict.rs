@@ -5,11 +5,11 @@ fosssim_num::closed_set! {
     /// The verdict words, from best to worst; of several, the worst counts.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum Verdict {
-        /// Everything is right.
+        /// The trace meets all rules.
         Accepted = "accepted", "AC";
         /// The scene was not run, because the grading was cut short.
         NotRun = "not run", "--";
-        /// The trace is complete, and nothing is logged in it: what the assignment asks for is not written yet.
+        /// The trace is complete and has empty logs: the student has not written what the assignment requires.
         Unwritten = "nothing written", "NW";
         /// The trace is complete and wrong.
         WrongAnswer = "wrong answer", "WA";
@@ -29,7 +29,7 @@ fosssim_num::closed_set! {
         Unusable = "unusable submission", "US";
         /// The program's sources do not build.
         CompileError = "compile error", "CE";
-        /// The program tried what the sandbox forbids.
+        /// The program tried something that the sandbox forbids.
         Violation = "sandbox violation", "SV";
         /// The grader failed. Never the student's fault, never the student's score.
         JudgeError = "judge error", "JE";
@@ -45,7 +45,7 @@ impl Verdict {
         Self::ALL.into_iter().find(|verdict| verdict.code() == code)
     }
 
-    /// Returns whether it says of the trace, and not of how the program ended, that it is wrong.
+    /// Returns whether the trace is wrong, in contrast to how the program ended.
     #[must_use]
     pub const fn is_wrong_trace(self) -> bool {
         matches!(self, Self::Unwritten | Self::WrongAnswer | Self::BadTrace)

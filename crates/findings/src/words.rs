@@ -1,8 +1,8 @@
-//! Findings in words: one sentence that says where, what was expected and what was there.
+//! Findings in words: one sentence that says the place, the expected and the actual value.
 //!
-//! Vectors have as many digits as tell them apart; other numbers are written so that reading them back gives the same
-//! value, with an exponent where they would be long otherwise. Reports that lay values out side by side use the fields
-//! of [`FindingDetail`] instead.
+//! Vectors have as many digits as distinguish them; other numbers are written so that reading them back gives the same
+//! value, with an exponent if they would be long otherwise. Reports that show values side by side use the fields of
+//! [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
@@ -24,16 +24,16 @@ impl Display for Finding {
 struct WithoutStep<'a>(&'a Finding);
 
 impl Finding {
-    /// Returns the finding in words, without its step: what stands in the first record starts, what stands in others
-    /// ends there.
+    /// Returns the finding in words, without its step. A value of the first record "starts" there, values of others
+    /// "end" there.
     #[must_use]
     pub fn what(&self) -> impl Display + '_ {
         WithoutStep(self)
     }
 }
 
-/// The reason why a decision is another one, and where coefficients may have gone. Whether a factor explains it, the
-/// trace's other polynomials tell.
+/// The reason for a different decision, and where coefficients may have gone. The trace's other polynomials show
+/// whether a factor explains it.
 const LACKING: &str = "the trace's polynomials lack coefficients for that";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
 const LEFT_OUT: &str = "are within reach of the penalty force, but no force was applied between them";
@@ -122,7 +122,7 @@ impl Display for WithoutStep<'_> {
     }
 }
 
-/// Writes the sentence about a time of impact, the expected one first, that follows from lost coefficients.
+/// Writes the sentence about a time of impact that follows from lost coefficients, with the expected time first.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
     let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(ExactNumber));
     write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
@@ -146,7 +146,7 @@ fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Re
     write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
 }
 
-/// Two vectors, the wrong one first, with as many digits as tell them apart, and their distance.
+/// Two vectors, the wrong one first, with as many digits as distinguish them, and their distance.
 struct VectorDifference {
     expected: [f64; 2],
     actual: [f64; 2],
@@ -173,7 +173,7 @@ impl Display for VectorDifference {
 
 /// Returns a value cut to a number of places behind the point; before it, where the number is negative.
 fn rounded(value: f64, places: i32, power: Option<i32>) -> f64 {
-    // More than seventeen digits say nothing new.
+    // More than seventeen digits add nothing.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
     let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {
         (Ok(digits), _) if places > 15 || value.abs() >= 1e9 => format!("{value:.digits$e}"),
@@ -210,8 +210,8 @@ pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize,
         .then(|| (difference / per_pass, actual > expected))
 }
 
-/// Returns whether a text has nothing but visible ASCII characters and blanks. Reports ask this of each of their texts,
-/// and their own crate is compiled without optimization.
+/// Returns whether a text has nothing but visible ASCII characters and blanks. Reports check each of their texts, and
+/// their own crate is compiled without optimization.
 #[must_use]
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))

@@ -28,7 +28,7 @@ impl Cancellation {
         self.cancelled.load(Ordering::SeqCst)
     }
 
-    /// Adds a run for as long as the result lives. A run that begins after the stop is ended at once.
+    /// Adds a run for as long as the result lives. A run that begins after the stop is ended immediately.
     pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
         let number = self.next.fetch_add(1, Ordering::Relaxed);
         self.lock().push((number, canceller.clone()));

@@ -1,5 +1,6 @@
-//! Cards: what a report shows of a wrong trace beyond its result. They are drawn while the trace is at hand and kept
-//! under the digest of what they say, so that the journal's result names them and the trace itself need not be kept.
+//! Cards: the part of a report that shows a wrong trace beyond its result. They are drawn while the trace is available,
+//! and kept under the digest of their contents. The journal's result names them, so that the trace itself need not be
+//! kept.
 use super::{config::Hints, result::SceneResult};
 use fosssim_evidence::StepRuling;
 use fosssim_files::Place;
@@ -23,24 +24,24 @@ pub struct JudgedTrace<'a> {
     pub name: &'a str,
     /// Likely mistakes, with no more than the reader may know.
     pub explanations: &'a [Explanation],
-    /// The outcome of judging; it tells more than the reader may know.
+    /// The outcome of judging; it has more than the reader may know.
     pub outcome: &'a Outcome,
     /// The ruling of the rule books on each step.
     pub rulings: &'a [StepRuling],
     /// The trace, or its beginning.
     pub trace: &'a [u8],
-    /// Whether the trace goes on beyond that.
+    /// Whether the trace is longer than that.
     pub is_cut: bool,
-    /// The rule books that were asked.
+    /// The rule books that judged.
     pub rules: Rules,
-    /// How much the reader is told.
+    /// The reader's hints.
     pub hints: Hints,
 }
 
-/// Draws the card of a trace, or nothing where there is nothing to show.
+/// Draws the card of a trace, or nothing if there is nothing to show.
 pub type Draw<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 
-/// Where cards are kept, and who draws them.
+/// The place of cards, and the function that draws them.
 #[derive(Clone, Copy)]
 pub struct Cards<'a> {
     /// The folder; made when it is needed.
@@ -51,11 +52,11 @@ pub struct Cards<'a> {
     pub for_students: bool,
 }
 
-/// The names of a trace's cards: for staff, and for students where they are told less.
+/// The names of a trace's cards: for staff, and for students if their hints are lower.
 pub type CardNames = (Option<String>, Option<String>);
 
 impl Cards<'_> {
-    /// Draws the cards of a trace, and keeps them. `students` is how much they are told of the scene.
+    /// Draws the cards of a trace, and keeps them. `students` are the hints for students.
     ///
     /// # Errors
     /// When one can't be written.
@@ -75,7 +76,7 @@ impl Cards<'_> {
         (self.draw)(judged).map(|card| store(self.folder, &card)).transpose()
     }
 
-    /// Returns whether a card of an earlier result is missing; `students` is how much they are told of the scene.
+    /// Returns whether a card of an earlier result is missing; `students` are the hints for students.
     pub(super) fn lack(&self, result: &SceneResult, students: Hints) -> bool {
         let is_missing = |name: &String| !file(self.folder, name).is_file();
         let shows_students = self.for_students && students > Hints::None;

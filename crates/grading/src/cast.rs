@@ -1,4 +1,4 @@
-//! A stage for tests: programs that do what their names say, played by the sandbox's stand-in.
+//! Programs for tests: each does what its name says, played by the sandbox's stand-in.
 use super::{
     batch,
     cancellation::Cancellation,
@@ -23,7 +23,7 @@ const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"fu
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
 
-/// A limit for traces that the right ones of the small plan keep, in bytes.
+/// A limit for traces that the right programs of the small plan keep, in bytes.
 pub(super) const SMALL_TRACE: usize = 1 << 20;
 
 pub(super) fn small_plan() -> Plan {
@@ -52,7 +52,7 @@ pub(super) fn right_trace(job: &Job) -> Vec<u8> {
     trace(&scene, scene.steps())
 }
 
-/// Hears whether the failsafe moves a zone.
+/// Notes whether the failsafe moves a zone.
 struct ZonesMoved(bool);
 
 impl Observer for ZonesMoved {
@@ -61,7 +61,7 @@ impl Observer for ZonesMoved {
     }
 }
 
-/// Programs of this cast do what their names say.
+/// Runs a program of this cast, which does what its name says.
 fn act(job: &Job) -> FakeRun {
     match job.program.file_name().and_then(|name| name.to_str()) {
         Some("right") => FakeRun::wrote(right_trace(job)),

@@ -28,7 +28,7 @@ use std::{
 #[cfg(target_os = "linux")]
 const KEPT_OUTPUT: usize = 4096;
 
-/// The way a program ended, what it took, and what it printed.
+/// The way in which a program ended, its measurements, and its output.
 #[derive(Debug, Clone)]
 pub struct ProgramRun {
     ended: RunEnd,
@@ -81,7 +81,7 @@ pub struct Run<'a> {
     pub trace_bytes: u64,
     /// The rule books; the official one gives verdict, findings and right steps.
     pub rules: Rules,
-    /// How much any reader may be told.
+    /// The highest hints of any reader.
     pub hints: Hints,
     /// The limits that it had.
     pub limits: &'a RunLimits,
@@ -121,15 +121,14 @@ impl Look {
     }
 }
 
-/// Returns the result of one scene, with all that any reader may be told. `explain` says what is likely wrong; it is
-/// not asked where nothing of it may be told, where the fair rules find no fault, or where what the program did besides
-/// is its worse fault.
+/// Returns the result of one scene, with all that any reader may know. `explain` finds the likely mistake. It is not
+/// called if no reader may know it, if the fair rules find no fault, or if the program's end is the worse fault.
 #[must_use]
 pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(run);
-    // A program that was stopped has a trace without end; saying so too would blame it twice.
+    // A stopped program leaves an incomplete trace; reporting that too would blame it twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
     let (verdict, reason) = match blames_program || of_program > of_trace {
@@ -161,7 +160,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     result
 }
 
-/// Returns the bytes of a complete trace of this scene in which every list is empty; nothing where the reference's are
+/// Returns the bytes of a complete trace of this scene in which every list is empty; nothing if the reference's are
 /// empty, too.
 fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let layout = Layout::for_scene(scene);
@@ -188,7 +187,7 @@ fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
     }
 }
 
-/// Returns how far a program's trace had come, and the limit that it was stopped at.
+/// Returns the progress of a program's trace, and the limit that stopped the program.
 fn reached(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgress {
     let limit = match ended {
         RunEnd::CpuLimit => Some(Limit::Time(limits.cpu)),
@@ -202,7 +201,7 @@ fn reached(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgr
 /// Returns the verdict by the trace alone.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
-    // States that nothing keeps apart may have no next one: the trace is complete all the same.
+    // States without collision handling may have no next state: the trace is complete all the same.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
@@ -239,7 +238,7 @@ fn wrong(judged: &Outcome, rules: Rules) -> WrongTrace {
     }
 }
 
-/// Returns why the fair rules refuse a trace that the original reads to its end.
+/// Returns why the fair rules reject a trace that the original reads to its end.
 fn refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
@@ -247,7 +246,7 @@ fn refusal(judged: &Outcome) -> BadTrace {
     }
 }
 
-/// Returns the first bytes of what was printed, as text; what is not UTF-8 is replaced.
+/// Returns the first bytes of the output as text; bytes that are not UTF-8 are replaced.
 #[cfg(target_os = "linux")]
 pub(super) fn beginning(printed: &[u8], most: usize) -> String {
     let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();
@@ -265,7 +264,7 @@ mod tests {
     use fosssim_student::{self as student, Mistake, Student};
     use fosssim_testing::scenes;
 
-    /// Explaining takes as long as judging many traces: nobody asks for what is not told.
+    /// Explaining takes as long as judging many traces, so it is skipped if no reader may see it.
     #[test]
     fn what_is_not_told_is_not_explained() {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;

@@ -1,4 +1,4 @@
-//! `suite.toml`: what to grade, with what limits, points and visibility.
+//! `suite.toml`: the scenes to grade, with limits, points and visibility.
 //!
 //! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`template`]).
@@ -24,13 +24,13 @@ pub use super::{assignments::template, shape::MOST_POINTS};
 pub struct Suite<Scene = Pattern> {
     /// The suite's name, shown in reports.
     pub name: String,
-    /// The milestone whose programs it grades, where it says so.
+    /// The milestone whose programs it grades, if it names one.
     pub milestone: Option<Assignment>,
-    /// How the program is run; `{program}`, `{scene}` and `{trace}` are replaced.
+    /// The command that runs the program; `{program}`, `{scene}` and `{trace}` are replaced.
     pub run: Vec<String>,
-    /// The rule books to ask; the official one gives verdicts and points.
+    /// The rule books that judge; the official one gives verdicts and points.
     pub rules: Rules,
-    /// How much reports for staff tell: everything, unless the one who grades wants less.
+    /// The hints for staff: everything, unless the grader's user wants less.
     pub staff_hints: Hints,
     /// Whether students see what their programs print even though some groups are not visible to them.
     pub show_output: bool,
@@ -38,7 +38,7 @@ pub struct Suite<Scene = Pattern> {
     pub build: Option<BuildStep>,
     /// Limits of each run.
     pub limits: RunLimits,
-    /// When the rest of a submission is not run any more.
+    /// The condition after which the rest of a submission is not run any more.
     pub patience: Patience,
     /// The course's own words on mistakes, by their keys.
     pub notes: BTreeMap<String, CourseNote>,
@@ -64,7 +64,7 @@ pub struct Group<Scene = Pattern> {
 pub struct Pattern {
     /// The pattern's text.
     pub text: String,
-    /// Where it stands, for messages about patterns that match nothing.
+    /// The place of the pattern, for messages about patterns that match nothing.
     pub at: Position,
 }
 
@@ -73,19 +73,19 @@ pub struct Pattern {
 pub struct Marking {
     /// Points of the whole group, shared evenly among its scenes.
     pub points: f64,
-    /// How partial success counts.
+    /// The rule for partial success.
     pub credit: Credit,
     /// The readers who see it.
     pub visibility: Visibility,
-    /// How much students are told of its scenes.
+    /// The hints for students about its scenes.
     pub hints: Hints,
-    /// Whether its points are extra: reported beside the others, and not counted in the sum or the maximum.
+    /// Whether its points are extra: reported next to the others, and not counted in the sum or the maximum.
     pub extra: bool,
     /// Points for speed, once all scenes are accepted.
     pub speed: Option<SpeedMarking>,
 }
 
-/// How the sources are built.
+/// The build of the sources.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BuildStep {
     /// The command, run in a copy of the submission's folder.
@@ -134,7 +134,7 @@ impl Default for RunLimits {
     }
 }
 
-/// How long a submission is borne with.
+/// The number of failures after which a submission is given up.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patience {
     /// The number of scenes in a row that may run into a limit of time, memory or output; 0 for any number.
@@ -149,7 +149,7 @@ impl Default for Patience {
     }
 }
 
-/// How partial success counts.
+/// The rule for partial success.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Credit {
@@ -170,7 +170,7 @@ pub struct Position {
     pub column: usize,
 }
 
-/// Counts lines and columns from where it was asked last, so that many places of a long line take no longer than one.
+/// Counts lines and columns from the last place, so that many places of a long line take no longer than one.
 struct PositionCounter<'a> {
     text: &'a str,
     offset: usize,
@@ -210,7 +210,7 @@ pub struct SuiteError {
     pub problems: Vec<(Position, String)>,
 }
 
-/// A suite whose shape has been checked: what is missing or out of range has been told.
+/// A suite whose shape has been checked: faults of single values have been reported.
 #[derive(Deserialize, Default)]
 struct RawSuite {
     schema: Option<Spanned<u32>>,
@@ -288,7 +288,7 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
 }
 
-/// Reads a suite and everything that is wrong with it, in order: what is wrong is left out or has its default.
+/// Reads a suite and all its faults, in order; a faulty part is left out or has its default.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let (table, mut problems, is_readable) = shape::checked(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
@@ -416,7 +416,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
     }
 }
 
-/// Reads a group; `hints` are those of a group that says nothing of them.
+/// Reads a group; `hints` are the hints of a group that sets none.
 fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
@@ -439,7 +439,8 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 
-/// Reads the course's words on a mistake. A key that nearly is a known one is a slip; others are of findings in general.
+/// Reads the course's words on a mistake. A key that is similar to a known one is a slip; other keys belong to findings
+/// in general.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
     let known = CATALOGUE.iter().map(|row| row.id);
@@ -451,7 +452,7 @@ fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String,
     Some((key.into_inner(), note))
 }
 
-/// Reads the course's words on something; none where there are none.
+/// Reads the course's words on something; `None` if there are none.
 fn read_note(
     problems: &mut Vec<Problem>,
     text: Option<String>,

@@ -37,7 +37,7 @@ const TRACE_FILE: &str = "trace.bin";
 /// A fault of ours or of the machine is tried so often before it is reported.
 const ATTEMPTS: u32 = 2;
 
-/// How scenes are run.
+/// The way in which scenes are run.
 #[derive(Clone, Copy)]
 pub struct Runner<'a> {
     /// The sandbox.
@@ -46,31 +46,31 @@ pub struct Runner<'a> {
     pub run: &'a [String],
     /// Limits of each run.
     pub limits: &'a RunLimits,
-    /// The rule books to ask.
+    /// The rule books that judge.
     pub rules: Rules,
-    /// How much the result tells: of all readers, staff is told most.
+    /// The hints of the result: those of the reader who sees most, which is staff.
     pub hints: Hints,
-    /// How much students are told of the scene.
+    /// The hints for students about the scene.
     pub student_hints: Hints,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
-    /// Where its runs' working folders come from.
+    /// The source of working folders for its runs.
     pub folders: &'a Folders,
     /// Stops everything from outside.
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Place,
-    /// Where the trace is put if it is not accepted, when somebody wants to have it.
+    /// The place for the trace if it is not accepted, on request.
     pub trace: Option<&'a Place>,
-    /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
+    /// Draws and keeps cards of traces that are not simply right, on request.
     pub cards: Option<Cards<'a>>,
-    /// Adds up the processor time of runs, when somebody asks where it goes.
+    /// Adds up the processor time of runs, for `--timings`.
     pub timings: Option<&'a Timings>,
 }
 
 impl Runner<'_> {
-    /// Runs `program` on a scene, in a working folder of its own that is gone afterwards, and judges it. A fault of
-    /// ours is tried once more, then it is the verdict. `on_step` hears the number of every judged step.
+    /// Runs `program` on a scene, in a working folder of its own that is removed afterwards, and judges it. After a
+    /// fault of ours it tries once more, then the fault is the verdict. `on_step` gets the number of every judged step.
     #[must_use]
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
@@ -228,7 +228,7 @@ impl Runner<'_> {
             fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
-        // The judge has met an error here, if there is one.
+        // The judge has read an error here, if there is one.
         let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
         judged
     }
@@ -292,7 +292,7 @@ fn explained(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneRes
     explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
 }
 
-/// Tells how judging goes.
+/// Reports the progress of judging.
 struct ToldSteps<'a>(&'a mut dyn FnMut(u32));
 
 impl Progress for ToldSteps<'_> {

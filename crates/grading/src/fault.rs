@@ -30,7 +30,7 @@ fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     Ok(path.path())
 }
 
-/// Lets tests have the grader fail: a program of this name makes it panic at this stage.
+/// Lets tests make the grader fail: a program of this name makes it panic at this stage.
 #[cfg(test)]
 pub(super) fn inject(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();

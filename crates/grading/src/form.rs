@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// The version of the form.
 const VERSION: u32 = 6;
 
-/// A result as it is kept: the form's version stands before all that depends on it.
+/// A result as it is kept: the form's version comes before all that depends on it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     form: u32,
@@ -30,7 +30,7 @@ pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     line
 }
 
-/// Reads the entry that a line keeps; `None` where the line is damaged, or of another version.
+/// Reads the entry that a line keeps; `None` if the line is damaged, or of another version.
 #[must_use]
 pub fn read_line(line: &[u8]) -> Option<Entry> {
     serde_json::from_slice(line).ok().filter(|entry: &Entry| entry.form == VERSION)

@@ -1,8 +1,8 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
 //! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene: a caller with
-//! several jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is told; what
-//! is found is not run again. A panic in the work on one scene is a judge error of that scene.
+//! several jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is reported; a
+//! scene with a result is not run again. A panic in the work on one scene is a judge error of that scene.
 use super::{
     cancellation::Cancellation,
     cards::Cards,
@@ -43,9 +43,9 @@ pub struct Submission {
     pub name: String,
     /// The program or archive, or the folder of sources when the plan builds.
     pub path: PathBuf,
-    /// The name of the program or archive in the folder `path`, which somebody else filled. Links are not followed.
+    /// The name of the program or archive in the folder `path`, whose contents are not ours. Links are not followed.
     pub program: Option<String>,
-    /// Which file the program was when submissions were looked for.
+    /// The identity of the program's file when submissions were searched.
     pub file: Option<OneFile>,
 }
 
@@ -56,26 +56,26 @@ impl Submission {
     }
 }
 
-/// How to go about it.
+/// The options of a grading.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
     /// Runs at one time.
     pub jobs: usize,
-    /// Whether a submission's first scene that is not accepted is the last one that is run.
+    /// Whether the first scene of a submission that is not accepted ends its grading.
     pub fail_fast: bool,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
 }
 
-/// Where to put the trace of a submission's scene.
+/// The place for the trace of a submission's scene.
 pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
 
-/// Everything that the submissions of one grading have in common.
+/// The parts that the submissions of one grading share.
 #[derive(Clone, Copy)]
 pub struct Grader<'a> {
     /// The plan: scenes, limits and rules.
     pub plan: &'a Plan,
-    /// Where to run it.
+    /// The sandbox in which programs run.
     pub backend: &'a Backend,
     /// The program's name in archives.
     pub program: &'a str,
@@ -85,18 +85,18 @@ pub struct Grader<'a> {
     pub options: Options,
     /// The folder for traces on which the grader itself failed; made when it is needed.
     pub faults: &'a Place,
-    /// Where the trace of a scene that is not accepted is put, when somebody wants to have it.
+    /// The place for the trace of a scene that is not accepted, on request.
     pub traces: Option<&'a TraceFile<'a>>,
-    /// Draws and keeps cards of traces that are not simply right, when somebody wants to look at them.
+    /// Draws and keeps cards of traces that are not simply right, on request.
     pub cards: Option<Cards<'a>>,
-    /// Says what is to be said of smallest scenes, when somebody wants them.
+    /// Describes the smallest scenes, on request.
     pub smallest: Option<&'a DescribeSmallest<'a>>,
-    /// Does what a grade needs, on the job that has drawn it.
+    /// Completes a grade, on the job that has made it.
     pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
-    /// Adds up the processor time of all runs, when somebody asks where it goes.
+    /// Adds up the processor time of all runs, for `--timings`.
     pub timings: Option<&'a Timings>,
-    /// The program whose speed is the measure: the original, or one that does as it does when it is called so. Without
-    /// one no speed is measured.
+    /// The program whose speed is the measure: the original, or a program that plays it under its name. Without one no
+    /// speed is measured.
     pub reference: Option<&'a Path>,
 }
 
@@ -136,7 +136,7 @@ pub(super) struct SharedGrading<'a> {
     released: Condvar,
     /// The reason why results can't be kept any more.
     pub(super) full: OnceLock<KeepError>,
-    /// The contents of the plan's scenes, once somebody has asked.
+    /// The contents of the plan's scenes, once they are needed.
     contents: OnceLock<Vec<Contents>>,
     /// The copy of the reference program, once something is timed.
     reference: OnceLock<Arc<Result<StagedProgram, String>>>,
@@ -161,13 +161,13 @@ impl<'a> SharedGrading<'a> {
     }
 
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
-        // A program may behave as it is called, so its name belongs to what is graded.
+        // A program may depend on its own name, so the name belongs to what is graded.
         let own = [scene.name.as_str(), called, students.describe().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
         Key::from_program(digest, &scene.xml, &words)
     }
 
-    /// Finds an earlier result, or that of an equal program in this grading. Where traces or cards are wanted, one
+    /// Finds an earlier result, or that of an equal program in this grading. If traces or cards are wanted, a result
     /// without them does not count.
     fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
@@ -184,7 +184,7 @@ impl<'a> SharedGrading<'a> {
         find: impl Fn(&Key) -> Option<FoundResult>,
     ) -> Result<KeyClaim<'s>, Box<FoundResult>> {
         let mut claimed = lock(&self.claimed);
-        // Where nothing is kept there is no result to wait for.
+        // If nothing is kept there is no result to wait for.
         while self.results.is_some() && claimed.contains(&key) {
             claimed = self.released.wait(claimed).unwrap_or_else(PoisonError::into_inner);
         }
@@ -231,11 +231,11 @@ struct FinishedScene<'s> {
     result: SceneResult,
     /// Taken from an earlier run.
     cached: bool,
-    /// Under what it is to be kept; what was found needs no keeping.
+    /// The claim under which the result is kept; a result that was found needs none.
     claim: Option<KeyClaim<'s>>,
 }
 
-/// A result that was found, for which nobody needs a claim.
+/// A result that was found, which needs no claim.
 type FoundResult = FinishedScene<'static>;
 
 impl FinishedScene<'_> {
@@ -248,7 +248,7 @@ impl FinishedScene<'_> {
 pub(super) enum SceneNews {
     /// The scene begins.
     Begins,
-    /// Steps have been judged up to this one; not every step is told.
+    /// Steps have been judged up to this one; not every step is reported.
     Step(u32),
     /// The scene has its result, and whether that was taken from an earlier run.
     Done(bool),
@@ -262,7 +262,7 @@ pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,
     pub(super) shared: &'a SharedGrading<'a>,
     pub(super) submission: &'a Submission,
-    /// The digest of the program as it lies there; none for what has to be built or copied first.
+    /// The digest of the program in its place; `None` if it has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
     pub(super) staged: Mutex<Option<Arc<Result<StagedProgram, String>>>>,
     known: Mutex<SubmissionProgress>,
@@ -274,7 +274,7 @@ struct SubmissionProgress {
     done: Vec<Option<(Verdict, Duration)>>,
     /// The first scene that is not run any more, and why.
     end: Option<(usize, NotRunReason)>,
-    /// The results that are told, each with the word whether it was found.
+    /// The reported results, each with whether it was found.
     told: Vec<Option<(SceneResult, bool)>>,
     /// The number of results that are still missing there.
     missing: usize,
@@ -295,8 +295,8 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Finds or makes the result of a scene, by its number in the plan, keeps it, and tells it; with the last one, the
-    /// grade.
+    /// Finds or makes the result of a scene, by its number in the plan, keeps it, and reports it; after the last one,
+    /// also the grade.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
@@ -331,7 +331,7 @@ impl<'a> SubmissionGrading<'a> {
         let trace = grader.traces.map(|path| path(submission, scene));
         let students = grader.plan.student_hints(&scene.name);
         let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
-        // Found or claimed before anything is copied, where the program is known as it lies there.
+        // Found or claimed before anything is copied, if the program is known in its place.
         let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.called(), students));
         let known = match known.map(|key| shared.claim(key, find)).transpose() {
             Ok(claim) => claim,
@@ -379,7 +379,7 @@ impl<'a> SubmissionGrading<'a> {
         self.runner(scene, trace).grade(staged, scene, &mut on_step)
     }
 
-    /// Runs programs on a scene, and puts a trace that is not accepted where `trace` says.
+    /// Returns a runner of programs on a scene, which stores a trace that is not accepted in `trace`.
     pub(super) fn runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
         let grader = self.grader;
         Runner {

@@ -1,7 +1,7 @@
-//! Faults of our own: what panics while one scene is judged, explained or reported must not end a class's grading.
+//! Faults of our own: a panic while one scene is judged, explained or reported must not end a class's grading.
 //!
 //! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of
-//! that scene. Nothing is repaired: what the work had in its hands is dropped.
+//! that scene. Nothing is repaired: the data of the work are dropped.
 use std::{
     any::Any,
     cell::{Cell, RefCell},
@@ -19,9 +19,9 @@ thread_local! {
     static CAUGHT: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Does some work; a panic in it comes back as a fault and is not printed.
+/// Does some work, and returns a panic in it as a fault, which is not printed.
 ///
-/// The caller has to drop what the work was changing, as after any error: its state is whatever the panic left.
+/// The caller must drop what the work was changing, as after any error: its state is unknown.
 ///
 /// # Errors
 /// When the work panics.
@@ -33,7 +33,7 @@ pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| message(&*payload))))
 }
 
-/// Has panics of guarded work told to us, with their place; all others go where they went before.
+/// Installs a panic hook that captures panics of guarded work, with their place, and forwards all others.
 fn listen() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
@@ -64,10 +64,10 @@ mod tests {
         let fault = guarded(|| -> u32 { panic!("no {}\nleft", "tea") }).expect_err("a panic").to_string();
         assert!(fault.starts_with("no tea left at ") && fault.contains("guard.rs:"), "{fault}");
         assert_eq!(guarded(|| 7), Ok(7));
-        // One within the other, and one that went through another thread.
+        // A panic within another, and one that was forwarded through another thread.
         let nested = guarded(|| guarded(|| panic!("inner")).map_err(|fault| fault.to_string().len()));
         assert!(matches!(nested, Ok(Err(1..))), "{nested:?}");
-        // One that began on another thread goes on without a hook being asked.
+        // A panic that began on another thread continues without a call of the hook.
         let elsewhere = guarded(|| panic::resume_unwind(Box::new("elsewhere")));
         assert_eq!(elsewhere, Err(Fault("elsewhere".to_owned())));
     }

@@ -1,4 +1,4 @@
-//! Under what a result is found again: a digest of everything that it depends on.
+//! The key under which a result is found again: a digest of everything that it depends on.
 use serde::{Deserialize, Serialize};
 use std::{
     fs::File,
@@ -12,7 +12,7 @@ pub struct Key(String);
 
 impl Key {
     /// Returns the key of a run: digests of program and scene, and words for everything else that matters (rules,
-    /// limits, the command, the way of judging). What judges is always part of it.
+    /// limits, the command, the way of judging). The judging program is always part of it.
     #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::by(this_build(), program, scene, words)
@@ -31,10 +31,10 @@ impl Key {
     }
 }
 
-/// Returns the digest of this very program: two builds of one version may judge differently. Its version where that
-/// can't be read.
+/// Returns the digest of this very program: two builds of one version may judge differently. If it can't be read, its
+/// version.
 ///
-/// The linker's own digest of all that it wrote (the GNU build ID) stands for the bytes where there is one: to read a
+/// The linker's own digest of all that it wrote (the GNU build ID) replaces the bytes if there is one: to read a
 /// program of this size takes as long as to judge ten small scenes.
 #[must_use]
 pub fn this_build() -> &'static str {
@@ -120,7 +120,7 @@ mod tests {
         program.resize(64 + 56, 0);
         (program[32], program[56], program[64]) = (64, 1, 4);
         (program[64 + 8], program[64 + 32]) = (120, 20 + 36);
-        // A note of somebody else's, then the build ID.
+        // A note of another program, then the build ID.
         program.extend([5, 0, 0, 0, 0, 0, 0, 0, 3, 0, 0, 0].iter().chain(b"none\0\0\0\0"));
         program.extend([4, 0, 0, 0, 20, 0, 0, 0, 3, 0, 0, 0].iter().chain(b"GNU\0").chain(&[7; 20]));
         assert_eq!(read(&program), Some(vec![7; 20]));

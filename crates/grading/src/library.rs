@@ -1,8 +1,7 @@
-//! The scenes and recordings that come with the program, embedded so that they are there wherever it runs.
+//! The scenes and recordings that come with the program, embedded, so that they exist wherever it runs.
 //!
-//! They lie in a folder per assignment. A scene's name is `Group/name`, and no two assignments have one in common;
-//! written in full, `t2m2/Group/name`, it is understood as well. Recordings are zstd files; `steps` are the digests of
-//! a recording's steps.
+//! They are in a folder per assignment. A scene's name is `Group/name`, and no two assignments share one; the full form
+//! `t2m2/Group/name` is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
 use super::assignments::{MadeScene, TIMING, version};
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
@@ -10,11 +9,11 @@ use include_dir::{Dir, File, include_dir};
 use std::path::Path;
 
 static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
-/// Nobody but what runs programs compares with recordings.
+/// Only what runs programs compares with recordings.
 #[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
-/// A wrong trace to look at: its scene, and what the sample wrote with the mistake `pe-linear-one-ab`.
+/// A wrong trace to examine: its scene, and the sample's output with the mistake `pe-linear-one-ab`.
 pub const FLAWED: (&str, &[u8]) = (
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/traces/flawed.bin")),
@@ -28,8 +27,8 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     stems(&ASSETS, ".xml")
 }
 
-/// Returns the names of all scenes that come with the program: those that are embedded, and those that are made when
-/// they are asked for, which have no recordings.
+/// Returns the names of all scenes that come with the program: embedded ones, and those that are made on demand, which
+/// have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
     names().chain(TIMING.iter().map(|made| made.name))
 }
@@ -53,7 +52,7 @@ pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
-/// Returns no recording: there are none where no programs are run.
+/// Returns no recording: without programs there is no use for one.
 #[must_use]
 #[cfg(not(target_os = "linux"))]
 pub const fn recording(_: &str) -> Option<&'static [u8]> {
@@ -73,7 +72,7 @@ pub fn reference(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)
 }
 
-/// Returns the assignment in whose folder a scene lies.
+/// Returns the assignment in whose folder a scene is.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
     if made(name).is_some() {
@@ -83,8 +82,8 @@ pub fn assignment(name: &str) -> Option<Assignment> {
     Assignment::named(path.components().next()?.as_os_str().to_str()?)
 }
 
-/// Returns whether a pattern takes a scene of this name. A pattern that begins with an assignment's folder, such as
-/// `t2m2/*`, takes scenes that lie there; with a version, such as `t2m2@1/*`, those of that version.
+/// Returns whether a pattern includes a scene of this name. A pattern that begins with an assignment's folder, such as
+/// `t2m2/*`, includes scenes of that folder; with a version, such as `t2m2@1/*`, scenes of that version.
 #[must_use]
 pub fn takes(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };

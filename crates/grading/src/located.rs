@@ -1,15 +1,15 @@
 //! The common properties of scenes in which a program crashes or runs into a limit: fault localization by spectra.
 //!
 //! A scene's spectrum is what the reference's run of it contains ([`coverage`](crate::coverage)): kinds of events, and
-//! values of their properties. A value is told where every scene that fails contains it, where it is as good as any
-//! other by Ochiai's measure, and where chance would not bring that about: Fisher's exact test, for as many values as
-//! are looked at. Values that the scenes can't tell apart are told together.
+//! values of their properties. A value is reported if every failing scene contains it, if no other is better by
+//! Ochiai's measure, and if chance would not explain that: Fisher's exact test, corrected for the number of values.
+//! Values that the scenes can't distinguish are reported together.
 use super::coverage::{Coverage, FAMILIES};
 pub use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A kind of event, or one value of one of its properties, by their numbers in [`FAMILIES`].
+/// A kind of event, or a value of one of its properties, by their numbers in [`FAMILIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ContentIndex {
     /// The kind of event.
@@ -26,7 +26,7 @@ pub type Contents = BTreeSet<ContentIndex>;
 pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// How its program failed, if it did.
+    /// The failure of its program, if it failed.
     pub failing: Option<FailureKind>,
     /// Steps whose records were complete.
     pub steps: u32,
@@ -34,11 +34,11 @@ pub struct TriedScene<'a> {
     pub contents: &'a Contents,
 }
 
-/// Chance must bring the like about less often than this, over all values that are looked at.
+/// The greatest probability that chance explains the result, over all values that are tried.
 const SIGNIFICANT: f64 = 0.01;
 
 impl ContentIndex {
-    /// Returns all that a scene contains; nothing where it can't be simulated to its end.
+    /// Returns all contents of a scene; none if it can't be simulated to its end.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Contents {
         let coverage = Coverage::for_scene(scene).unwrap_or_default();
@@ -70,7 +70,7 @@ impl ContentIndex {
     }
 }
 
-/// Returns the contents that the failing scenes have in common; nothing where the evidence is weak.
+/// Returns the contents that the failing scenes have in common; `None` if the evidence is weak.
 #[must_use]
 pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
@@ -117,7 +117,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     })
 }
 
-/// Returns the probability that this number of scenes, drawn at random from `all`, all lie among these `with`.
+/// Returns the probability that this number of scenes, drawn at random from `all`, are all among these `with`.
 fn chance(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;
@@ -132,7 +132,7 @@ mod tests {
         ContentIndex { family, value }
     }
 
-    /// Scenes by what they contain: a contact each; some a zone, of which some are held by a half-plane.
+    /// Scenes by their contents: a contact each; some have a zone, of which some are held by a half-plane.
     fn scenes(zones: usize, held: usize, all: usize) -> Vec<Contents> {
         let scene = |number: usize| {
             let mut contents = Contents::from([content(0, None), content(0, Some((0, number % 3)))]);

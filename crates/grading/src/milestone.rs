@@ -1,4 +1,4 @@
-//! Tells of which milestone a program is, by the scenes that it takes: a starter library ends with an exit code at an
+//! Finds the milestone of a program by the scenes that it accepts: a starter library ends with an exit code at an
 //! integrator or a collision type that it does not know, whatever its student wrote.
 use super::{config::RunLimits, execute::Runner, task::SceneTask};
 use fosssim_model::{
@@ -11,8 +11,8 @@ use std::{path::Path, time::Duration};
 /// The time on the processor and on the clock for two steps of two bodies, of which a program needs some milliseconds.
 const LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns the milestone whose library takes the scenes that this program takes, and no others; nothing where there is
-/// none, or where the program writes no trace at all. The program is run six times, on two bodies that do not meet.
+/// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if there is none,
+/// or if the program writes no trace at all. The program is run six times, on two bodies that do not meet.
 ///
 /// # Errors
 /// Faults of ours or of the machine, in words.
@@ -24,7 +24,7 @@ pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignme
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
         let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
-        // One that crashes has taken the scene.
+        // A program that crashes has accepted the scene.
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
     };
     let mut integrators = Vec::new();

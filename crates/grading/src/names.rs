@@ -1,5 +1,5 @@
-//! Names of files as text in which nothing is hidden: two entries never look the same, and none changes what stands
-//! around it.
+//! Names of files as text in which nothing is hidden: two entries never look the same, and none changes the text around
+//! it.
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
 use unicode_normalization::UnicodeNormalization;
 use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
@@ -7,11 +7,10 @@ use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 /// The greatest number of marks on one letter; further ones only cover the text around.
 const MARKS: usize = 4;
 
-/// Returns a file's name as text, in the usual form of letters with marks (NFC). What nobody could see, or what would
-/// be taken for something else, stands there as an escape: bytes that are no text (`\xff`), control and format
-/// characters (`\r`, `\u{200b}`), blanks other than single ones between letters, and the backslash itself. So names
-/// that are told apart by their bytes are told apart by eye, but for letters with marks that are written in two ways
-/// ([`exact`]).
+/// Returns a file's name as text, in the usual form of letters with marks (NFC). Invisible or ambiguous characters
+/// become escapes: bytes that are no text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other than
+/// single ones between letters, and the backslash itself. Names with different bytes therefore look different, except
+/// for letters with marks that are written in two ways ([`exact`]).
 #[must_use]
 pub fn shown(name: &OsStr) -> String {
     each_chunk(name, |valid| escaped(&valid.nfc().collect::<String>(), |_| false))
@@ -21,7 +20,7 @@ pub fn shown(name: &OsStr) -> String {
 /// every name.
 #[must_use]
 pub fn exact(name: &OsStr) -> String {
-    // A letter that is not in its usual form has one that is shorter or longer, or is another.
+    // A letter that is not in its usual form has another form that is shorter or longer, or is another letter.
     each_chunk(name, |valid| escaped(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
 }
 

@@ -1,9 +1,9 @@
-//! Which known words are near to one that was typed.
+//! Finds known words that are similar to a typed word.
 
 /// The number of letters of a word that are compared.
 const LONGEST: usize = 60;
 
-/// Returns the word that was probably meant: few slips away, or the same but for case and punctuation.
+/// Returns the word that was probably meant: at most a few slips away, or the same except for case and punctuation.
 #[must_use]
 pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     let typed = plain(word);
@@ -18,7 +18,7 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
 }
 
 /// Returns the names nearest to a typed word, at most `most` of them, the nearest first. A name is compared as a whole
-/// and by its last part, since its group may be what was mistyped or left out.
+/// and by its last part, because its group may be mistyped or left out.
 #[must_use]
 pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
     let last = |name: &str| plain(name.rsplit('/').next().unwrap_or_default());
@@ -52,7 +52,8 @@ fn distance(one: &[char], other: &[char]) -> usize {
     distances(one, other)[other.len()]
 }
 
-/// Returns the distance, or one more than that to a beginning of the other: nobody types long names to their end.
+/// Returns the distance, or one more than the distance to a beginning of the other: long names are seldom typed to
+/// their end.
 fn or_beginning(one: &[char], other: &[char]) -> usize {
     let distances = distances(one, other);
     let of_beginnings = distances.iter().min().map_or(0, |least| least + 1);

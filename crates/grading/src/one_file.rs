@@ -1,5 +1,5 @@
-//! Whose a file is that has several names. Backups and tools that save room make such files, and nobody loses points
-//! for that; only a submission that was seen to have another's file has none of its own.
+//! Finds the owner of a file that has several names. Backups and tools that save space make such files, which costs no
+//! points; only a submission that was seen to have another's file has none of its own.
 use fosssim_files::Identity;
 use std::{fs::File, io, os::unix::fs::MetadataExt};
 
@@ -14,7 +14,7 @@ pub struct OneFile {
     pub is_anothers: bool,
 }
 
-/// The message for two submissions with one file whose owner nobody can tell. It names nobody: students read it, too.
+/// The message for two submissions with one file whose owner is unknown. It has no names: students read it, too.
 pub(super) const SHARED: &str =
     "the program is one file with another submission's (a hard link); the machine can't tell whose it is";
 
@@ -27,7 +27,7 @@ pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bo
     match noted {
         _ if metadata.nlink() == 1 => Ok(false),
         Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
-        // Nobody has looked whose it is: the machine's fault or a trick, and no reason for a zero.
+        // The owner was not searched: the machine's fault or a trick, and no reason for a zero.
         _ => Err(io::Error::other("the file was exchanged while submissions were graded; grade again")),
     }
 }

@@ -1,7 +1,7 @@
-//! When the rest of a submission is not run any more: a class must not wait for one program that never ends.
+//! Decides when the rest of a submission is not run any more: a class must not wait for one program that never ends.
 //!
-//! Pure functions of what is known so far, in the suite's order. More knowledge can only move the end forward, so what
-//! is decided while scenes still run holds, and at the end the same scenes are left out whatever the number of jobs.
+//! Pure functions of the results so far, in the suite's order. Further results can only move the end forward, so a
+//! decision while scenes still run holds, and in the end the same scenes are left out whatever the number of jobs.
 use super::{
     config::Patience,
     result::{NotRunReason, Reason, SceneResult},
@@ -53,8 +53,8 @@ pub(super) fn end(
     None
 }
 
-/// Returns whether a program with this verdict was stopped at a limit. An endless loop runs into whichever comes first:
-/// of time, of memory, of what it may write.
+/// Returns whether a program with this verdict was stopped at a limit. An endless loop reaches the first of several:
+/// time, memory, or the size of its output.
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }

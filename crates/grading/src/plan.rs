@@ -1,4 +1,4 @@
-//! A suite with its scenes looked up: what a grading really runs.
+//! A suite with its scenes looked up: the scenes that a grading really runs.
 pub use super::assignments::{default_name, names as built_in_names};
 use super::{
     assignments,
@@ -26,8 +26,8 @@ impl Plan {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Returns the part of the plan with the scenes that `takes` takes by name. Each keeps its points; groups without
-    /// any are left out, and the name says that this is a part.
+    /// Returns the part of the plan with the scenes that `takes` selects by name. Each keeps its points; empty groups
+    /// are left out, and the name says that this is a part.
     #[must_use]
     pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();
@@ -49,26 +49,25 @@ impl Plan {
         self
     }
 
-    /// Returns how much students are told of a scene.
+    /// Returns the hints for students about a scene.
     #[must_use]
     pub fn student_hints(&self, scene: &str) -> Hints {
         let group = self.groups.iter().find(|group| group.scenes.iter().any(|task| task.name == scene));
         group.map_or(Hints::None, |group| group.marking.hints)
     }
 
-    /// Tells no reader more than this.
+    /// Limits the hints of all readers.
     pub fn tell_at_most(&mut self, hints: Hints) {
         self.staff_hints = hints;
         self.tell_students(hints);
     }
 
-    /// Tells students this much of every group.
+    /// Sets the hints for students in every group.
     pub fn tell_students(&mut self, hints: Hints) {
         self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
     }
 
-    /// Returns the milestone whose programs it grades: the one that it names, else the first that can run most of its
-    /// scenes.
+    /// Returns the milestone whose programs it grades: the named one, else the first that can run most of its scenes.
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         let can_run = |assignment: &Assignment| {
@@ -79,7 +78,7 @@ impl Plan {
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 
-    /// Returns the points that can be reached, without extra ones.
+    /// Returns the greatest number of points, without extra ones.
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
@@ -103,8 +102,8 @@ pub fn assignment(name: &str) -> Option<Assignment> {
 /// The scenes that a pattern takes: names and XML.
 pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 
-/// Looks up the scenes of a suite; `files` those whose patterns are not of scenes that come with the program. Patterns
-/// that match nothing, scenes that can't be read or are not sound, are told at the pattern's position.
+/// Looks up the scenes of a suite; `files` looks up patterns that do not name scenes of this program. Patterns that
+/// match nothing, and scenes that can't be read or are not sound, are reported at the pattern's position.
 fn resolved(
     suite: Suite,
     files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
@@ -161,13 +160,13 @@ fn resolved(
     Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, notes, groups }
 }
 
-/// Reads, validates and looks up a suite in one go.
+/// Reads, validates and looks up a suite.
 ///
 /// # Errors
 /// As [`config::read`]; also patterns that match nothing, and scenes that can't be read or are not sound.
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
-    // Patterns are looked up although something else is wrong: everything is told at once.
+    // Patterns are looked up even after other faults: all faults are reported together.
     let plan = resolved(suite, files, &mut problems);
     if problems.is_empty() {
         return Ok(plan);

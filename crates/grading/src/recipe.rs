@@ -1,4 +1,4 @@
-//! From what was handed in to a program that can be run: a program, an archive with one, or sources to build.
+//! The way from a submission to a program that can be run: a program, an archive with one, or sources to build.
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
@@ -21,12 +21,12 @@ use std::{
     path::Path,
 };
 
-/// How submissions become programs.
+/// The way from submissions to programs.
 #[derive(Clone, Copy)]
 pub struct Recipe<'a> {
     /// The program's name in folders and archives.
     pub program: &'a str,
-    /// How sources are built, where the suite says.
+    /// The build of sources, if the suite has one.
     pub build: Option<&'a BuildStep>,
     /// The place where they are built.
     pub backend: &'a Backend,
@@ -35,8 +35,8 @@ pub struct Recipe<'a> {
 }
 
 impl Recipe<'_> {
-    /// Stages a file that somebody names: a program, or an archive. A file that can't be run for what it is, is refused
-    /// with the reason.
+    /// Stages a file that a user names: a program, or an archive. A file of a kind that can't be run is rejected with
+    /// the reason.
     ///
     /// # Errors
     /// When the file can't be read for a fault of the machine, or the copy can't be written.
@@ -57,9 +57,9 @@ impl Recipe<'_> {
         Ok(StagedProgram::refused(path, why))
     }
 
-    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder that somebody else filled: a link that leads
-    /// elsewhere, to another's submission perhaps, is refused, and so is a file that is `noted` to be another's.
-    /// Without such a file, an archive in the folder is the submission.
+    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not ours: a link that leads
+    /// elsewhere, perhaps to another submission, is rejected, and so is a file that is `noted` to be another's. Without
+    /// such a file, an archive in the folder is the submission.
     ///
     /// # Errors
     /// As for [`Recipe::file`].
@@ -84,7 +84,7 @@ impl Recipe<'_> {
         Ok(StagedProgram::refused(&path, why))
     }
 
-    /// Stages what is built of the sources in a folder, or in the archive that is all that it holds.
+    /// Stages the build of the sources in a folder, or in the only archive that it holds.
     ///
     /// # Errors
     /// Faults of ours or of the machine.
@@ -100,12 +100,12 @@ impl Recipe<'_> {
     fn opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.unpacked(file, path),
-            // The copy tells why the file can't be read.
+            // The copy shows why the file can't be read.
             _ => copied(file, path),
         }
     }
 
-    /// Unpacks an archive, and stages what is in it: sources that are to be built, or else the program.
+    /// Unpacks an archive, and stages its contents: sources for a build, or else the program.
     fn unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
         let folder = TemporaryFolder::make("upload").map_err(at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
@@ -137,7 +137,7 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
 }
 
 /// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload.
-/// `is_alone` asks that it is all that the folder holds.
+/// `is_alone` requires that the folder holds only the archive.
 fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
     /// A folder with more entries is none of a platform's.
     const MOST: usize = 100;
@@ -148,7 +148,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
         return Ok(None);
     }
     let archive = |name: &OsString| {
-        // Of a file with several names nobody knows whose it is.
+        // The owner of a file with several names is unknown.
         let (mut file, _) = opened.regular_file(name.to_str()?, LARGEST_FOLDER).ok()?;
         matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(staged.refused, Some(UnusableReason::CouldNotStart(StartProblem::IsFolder)));
     }
 
-    /// Packs what lies in a folder, under this name beside it.
+    /// Packs the contents of a folder, under this name next to it.
     fn packed(folder: &Path, name: &str) -> PathBuf {
         let archive = folder.with_file_name(name);
         let packing = Command::new("tar").arg("czf").arg(&archive).arg("-C").arg(folder).arg(".").status();
@@ -230,7 +230,7 @@ mod tests {
         std::fs::write(&archive, [0x1f, 0x8b, 8, 0, 0, 0]).unwrap();
         let damaged = program(&archive).refused.map(|why| format!("{why:?}"));
         assert!(damaged.as_ref().is_some_and(|why| why.contains("damaged")), "{damaged:?}");
-        // Two archives, and nobody knows which.
+        // Two archives, and the right one is unknown.
         std::fs::copy(moodle.join("hw.tgz"), moodle.join("other.tgz")).unwrap();
         let two = staged(|recipe| recipe.file_in(&moodle, "FOSSSim", None)).refused;
         assert_eq!(two, Some(upload::without("FOSSSim", &moodle)));

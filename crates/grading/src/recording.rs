@@ -1,8 +1,8 @@
 //! Recordings: the reference traces of scenes, with a manifest and digests per step that diff well.
 //!
-//! Knows no files: it takes scenes and gives bytes, and compares them with what was recorded before. Layout of the
-//! folder `references`: that of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest
-//! per step) for `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
+//! Knows no files: it takes scenes and gives bytes, and compares them with earlier recordings. Layout of the folder
+//! `references`: that of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest per step)
+//! for `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
 use fosssim_model::{
     scene::{self, Problems, Scene},
     sim::{RootSearch, Simulation, StepError},
@@ -11,7 +11,7 @@ use fosssim_model::{
 use similar::TextDiff;
 use std::io::{self, Read};
 
-/// How hard zstd tries; recordings are made seldom and shipped often.
+/// The compression level of zstd; recordings are made seldom and shipped often.
 const COMPRESSION: i32 = 19;
 
 /// The reference trace of one scene.
@@ -98,8 +98,8 @@ pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> Stri
     recordings.into_iter().map(Recording::line).collect()
 }
 
-/// Returns a unified diff from what was recorded to what is simulated now; empty when they are the same. Git may have
-/// given the recorded lines the ends of another system.
+/// Returns a unified diff from the recording to the present simulation; empty if they are equal. Git may have given the
+/// recorded lines the ends of another system.
 #[must_use]
 pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));

@@ -1,5 +1,4 @@
-//! Folders of scenes, and of what is recorded of them: `<assignment>/<Group>/<name>`, or `<Group>/<name>` without
-//! assignments.
+//! Folders of scenes, and of their recordings: `<assignment>/<Group>/<name>`, or `<Group>/<name>` without assignments.
 use std::{
     fs, io,
     path::{Path, PathBuf},
@@ -10,14 +9,15 @@ use std::{
 pub struct SceneFile {
     /// The scene's name, `Group/name`.
     pub name: String,
-    /// The scene's path in the folder, without the extension: also that of its recording in the folder of recordings.
+    /// The scene's path in the folder, without the extension: also the path of its recording in the folder of
+    /// recordings.
     pub stem: String,
     /// The file.
     pub path: PathBuf,
 }
 
-/// Returns the files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files
-/// that lie elsewhere, or whose names are not UTF-8, are left out.
+/// Returns the files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files in
+/// other places, or with names that are not UTF-8, are left out.
 ///
 /// # Errors
 /// When a folder can't be read.

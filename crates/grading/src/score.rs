@@ -1,4 +1,5 @@
-//! From the results of a submission's scenes to its grade: verdicts, points, and what several scenes say together.
+//! Makes a grade of the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
+//! together.
 use super::{
     config::{Credit, MOST_POINTS, Marking},
     grade::{Grade, GroupGrade, SceneGrade},
@@ -12,8 +13,8 @@ use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 use std::time::Duration;
 
-/// Shares a group's points evenly among its scenes and adds up what was reached. The results come with the word whether
-/// they were taken from an earlier run.
+/// Shares a group's points evenly among its scenes and adds up the points reached. The results come with whether they
+/// were taken from an earlier run.
 ///
 /// With [`Credit::Steps`] a scene with a complete trace and a wrong answer gets the share of its steps without a
 /// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be
@@ -48,7 +49,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
 }
 
 /// Returns the grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no
-/// sandbox, no time. `is_timed` says whether speed counts.
+/// sandbox, no time. `is_timed` decides whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
@@ -65,7 +66,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         verdict,
         points,
         max_points,
-        // No program was run that could tell of a hidden scene.
+        // No program was run that could reveal a hidden scene.
         shows_output: true,
         refuted: refuted(plan, &groups),
         groups,
@@ -83,8 +84,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     }
 }
 
-/// Returns the results as those of one submission: where a trace of it shows anything, one that shows nothing is wrong
-/// as others are, and does not say that nothing is written.
+/// Returns the results as those of one submission: if one of its traces shows anything, an empty trace is wrong like
+/// others, and does not mean that nothing is written.
 fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {
@@ -165,7 +166,7 @@ fn follows(group: &GroupGrade) -> bool {
 /// The number of accepted scenes that are checked for evidence against a likely mistake.
 const WITNESSES: usize = 12;
 
-/// Returns the likely mistakes that accepted scenes speak against; the smallest of these are asked.
+/// Returns the likely mistakes that accepted scenes contradict; the smallest of these scenes are tried.
 fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()
@@ -181,7 +182,7 @@ fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .collect();
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(WITNESSES);
-    // Bundled scenes lie in their milestone's folder; of others, their contents tell it.
+    // Bundled scenes are in their milestone's folder; for others, their contents decide.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted(whose, &wrong, &right)

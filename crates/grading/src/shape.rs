@@ -1,6 +1,6 @@
-//! The shape of a suite file: which keys it has and what kind of value each takes.
+//! The shape of a suite file: its keys, and the kind of value of each.
 //!
-//! Finds every fault at once, and takes what is wrong out, so that what is right can still be looked at.
+//! Finds all faults together, and removes wrong parts, so that the others can still be checked.
 use super::near::closest;
 use fosssim_model::assignments::Assignment;
 use std::{borrow::Cow, ops::Range};
@@ -19,18 +19,18 @@ pub const MOST_POINTS: Range<f64> = 0.0..1e6;
 enum ValueKind {
     Text,
     Texts,
-    /// A number in this range; where it is not, its name is told with the table's before it.
+    /// A number in this range; if it is out of range, the message names its table first.
     Number(&'static str, Range<f64>),
     /// A whole number that is not negative.
     Whole,
     Flag,
-    /// One of these words.
+    /// One word of these.
     Choice(&'static [&'static str]),
     Table(&'static [Key]),
     Tables(&'static [Key]),
 }
 
-/// A key: its name, what it takes, whether it has to be there.
+/// A key: its name, its kind of value, and whether it is required.
 struct Key(&'static str, ValueKind, bool);
 
 const BUILD: &[Key] = &[
@@ -108,7 +108,7 @@ const SUITE: &[Key] = &[
     Key("group", ValueKind::Tables(GROUP), false),
 ];
 
-/// The tables in which a key that stands elsewhere may have been meant to be.
+/// The tables to which a misplaced key may belong.
 const PLACES: [(&str, &[Key]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
@@ -118,7 +118,7 @@ const PLACES: [(&str, &[Key]); 6] = [
     ("the top of the file", SUITE),
 ];
 
-/// Returns the table without what is wrong with it, all that is, and whether every line could be read.
+/// Returns the table without its faulty parts, all faults, and whether every line could be read.
 pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut problems: Vec<Problem> =
@@ -136,7 +136,7 @@ pub(super) fn checked(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) 
 /// Takes out of a table what does not belong there.
 fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
     for Key(name, _, required) in keys {
-        // A misspelt key is told where it stands.
+        // A misspelt key is reported at its place.
         let meant = |key: &Spanned<Cow<'_, str>>| {
             key.get_ref() == name || closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
         };
@@ -215,7 +215,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
     }
 }
 
-/// Returns a number's value, rounded where it is long; none of a hexadecimal one that no reader takes.
+/// Returns a number's value, rounded if it is long; none for a hexadecimal number, which no reader accepts.
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
@@ -231,7 +231,7 @@ fn article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// Returns the message for a word that is none of these.
+/// Returns the message for a word that is not in the list.
 fn not_among(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
     format!("{name} \"{word}\" is not known: there are {}{}", listed(words, "and"), hint.unwrap_or_default())

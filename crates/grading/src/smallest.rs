@@ -38,14 +38,14 @@ pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_s
 /// The time on the processor and on the clock of a run.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns limits with no more time than a program needs on a small scene. What it has recorded at its end is read all
-/// the same.
+/// Returns limits with no more time than a program needs on a small scene. A trace that is complete at its end is read
+/// all the same.
 #[must_use]
 pub fn impatient(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
 }
 
-/// Says all that is to be said of a smallest scene, where its students are told this much.
+/// Describes a smallest scene, with these hints for its students.
 pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene, Hints) -> SmallestScene + Sync + 'a;
 
 /// The most that may be spent on one cause.
@@ -53,7 +53,7 @@ pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene, Hints) -> SmallestScene + S
 pub struct ShrinkLimits {
     /// Runs of the program.
     pub runs: u32,
-    /// Processor time of these runs, and of this process meanwhile.
+    /// The processor time of these runs, and of this process meanwhile.
     pub time: Duration,
     /// Runs at one time.
     pub jobs: usize,
@@ -62,11 +62,11 @@ pub struct ShrinkLimits {
 /// A cause, and the scenes on which a program is wrong because of it.
 #[derive(Debug, Clone)]
 pub struct WrongScenes<'a> {
-    /// The reason, if it is known before a run is looked at.
+    /// The reason, if it is known before a run is judged.
     pub reason: Option<WrongReason>,
     /// The scenes.
     pub scenes: Vec<&'a SceneTask>,
-    /// The wrong step to begin with; by default the first ones.
+    /// The wrong step with which the search begins; by default the first ones.
     pub step: Option<u32>,
 }
 
@@ -140,7 +140,7 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
 
 /// Runs a program on ever smaller scenes.
 pub struct Shrinker<'a> {
-    /// How the program is run.
+    /// The way in which the program is run.
     pub runner: Runner<'a>,
     /// The program.
     pub program: &'a Path,
@@ -151,8 +151,8 @@ pub struct Shrinker<'a> {
 }
 
 impl Shrinker<'_> {
-    /// Returns the smallest scene for a cause that is found; nothing where neither a step nor some steps show it again.
-    /// `progress` hears the size of each smaller scene.
+    /// Returns the smallest scene for a cause; `None` if neither a step nor some steps show it again. `progress` is
+    /// called with the size of each smaller scene.
     ///
     /// # Errors
     /// Faults of ours or of the machine, in words.
@@ -165,7 +165,7 @@ impl Shrinker<'_> {
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let spent = AtomicU64::new(0);
-        // Where other threads grade, theirs does not count.
+        // If other threads grade, their time does not count.
         let of = if self.limits.jobs == 1 { TimeOf::Thread } else { TimeOf::Process };
         let begun = processor_time(of);
         let time = || Duration::from_nanos(spent.load(Ordering::Relaxed)) + processor_time(of).saturating_sub(begun);
@@ -180,7 +180,7 @@ impl Shrinker<'_> {
             let steps = cause.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let begin = beginnings(&task.scene, &seen.trace, &steps);
             let is_over = || time() >= self.limits.time || self.runner.cancellation.is_cancelled();
-            // At best the scene alone tells the mistake from all others.
+            // At best the scene alone distinguishes the mistake from all others.
             let mut search = |leads| self.reduced((&reason, leads), begin.clone(), &spent, &is_over, progress);
             let (mut found, mut held) = search(true)?;
             if found.is_none() {
@@ -188,7 +188,7 @@ impl Shrinker<'_> {
             }
             let Some(small) = found else { continue };
             let seen = match self.runner.cancellation.is_cancelled() {
-                // No program runs any more: what was seen before has to do.
+                // No program runs any more: the earlier result must suffice.
                 true => held.remove(&scene::write(&small.scene)),
                 false => Some(self.observe(&small.scene, &spent)?),
             };
@@ -201,7 +201,7 @@ impl Shrinker<'_> {
         Ok(None)
     }
 
-    /// Makes one of these scenes smaller; returns it, and the program's runs on all scenes on which it was wrong.
+    /// Reduces one of these scenes, and returns it with the program's runs on all scenes on which it was wrong.
     fn reduced(
         &self,
         (reason, leads): (&WrongReason, bool),

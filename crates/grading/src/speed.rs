@@ -1,4 +1,4 @@
-//! Times a submission beside the reference program, where a suite gives points for speed.
+//! Times a submission and the reference program, if a suite gives points for speed.
 //!
 //! Both run in turn in the same sandbox, on the same scene and machine, and both traces are judged: a program that is
 //! fast because it leaves something out in its timed runs has no points. The reference is this very program in its role
@@ -20,7 +20,7 @@ use fosssim_findings::{
 use std::{fs, time::Instant};
 
 impl SubmissionGrading<'_> {
-    /// Times the scenes of groups that mark speed, if all of the group's are accepted. Times that this machine took
+    /// Times the scenes of groups that mark speed, if all of the group's are accepted. Times that this machine measured
     /// earlier for the same program stay. Timed runs have as much time as the graded ones; when it is used up, each
     /// further scene is timed once.
     pub(super) fn time_scenes(&self, results: &mut [(SceneResult, bool)]) {
@@ -40,7 +40,7 @@ impl SubmissionGrading<'_> {
                 result.timing = self.timed(scene, marking, begin + self.grader.plan.patience.total);
                 *cached = false;
                 self.keep_timed(scene, result);
-                // Nothing more is to be had.
+                // No further time is left.
                 if result.timing.as_ref().is_none_or(|timing| timing.failed.is_some()) {
                     break;
                 }

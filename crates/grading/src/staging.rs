@@ -1,9 +1,10 @@
-//! Brings a submission to where it can be run: a copy that nobody else reads or changes, digested while it is copied.
+//! Copies a submission to a place in which it can run: no other process reads or changes the copy, which is digested
+//! while it is written.
 //!
 //! Each file that is copied is opened once, beneath the submission's folder and without following links or waiting, and
-//! judged by the open file: who may write in that folder can exchange a name, not what was opened. What can't be copied
-//! for what it is, or for who may read it, is the submission's own fault and not the grader's. Sources are built in a
-//! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
+//! judged by the open file: a user who may write in that folder can exchange a name, not the open file. If a file can't
+//! be copied because of its kind or its permissions, that is the submission's fault and not the grader's. Sources are
+//! built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
     conclude::beginning,
@@ -38,14 +39,14 @@ const KEPT_OUTPUT: usize = 64 << 10;
 /// Bytes that are copied at one go.
 const AT_ONE_GO: usize = 1 << 16;
 
-/// A program to run, with its digest. The copy goes away with it.
+/// A program to run, with its digest. The copy is removed with it.
 #[derive(Debug)]
 pub struct StagedProgram {
     /// The place where it is.
     pub program: PathBuf,
     /// The digest of its bytes; of its path when there is nothing that can be run.
     pub digest: blake3::Hash,
-    /// How it was built.
+    /// The result of its build.
     pub build: Option<Build>,
     /// The reason why the submission itself can't be run: its own fault.
     pub refused: Option<UnusableReason>,
@@ -54,7 +55,7 @@ pub struct StagedProgram {
     _folder: Option<TemporaryFolder>,
 }
 
-/// Says which file or folder the operating system refuses, and why: our fault or the machine's.
+/// Reports the file or folder that the operating system rejects, and why: our fault or the machine's.
 pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
@@ -103,7 +104,7 @@ pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     opened.file(OsStr::new(name), LARGEST_FOLDER).map(|(file, _)| file)
 }
 
-/// Returns the digest of a file as it lies there, without a copy; `None` for what [`Recipe::file`] refuses, and for
+/// Returns the digest of a file in its place, without a copy; `None` for files that [`Recipe::file`] rejects, and for
 /// links.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
@@ -134,7 +135,7 @@ impl StagedProgram {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
 
-    /// Returns the digest of the program's bytes; `None` where nothing can be run.
+    /// Returns the digest of the program's bytes; `None` if nothing can be run.
     pub(super) fn program_digest(&self) -> Option<blake3::Hash> {
         let is_built = self.build.as_ref().is_none_or(|build| build.end.is_success());
         (is_built && self.refused.is_none()).then_some(self.digest)
@@ -171,8 +172,8 @@ fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<St
     Ok(StagedProgram { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 
-/// Builds the sources in `folder`, in a copy, and stages the program that comes out of it. A build that fails is no
-/// error: [`StagedProgram::build`] tells of it.
+/// Builds the sources in `folder`, in a copy, and stages the resulting program. A build that fails is no error:
+/// [`StagedProgram::build`] holds it.
 pub(super) fn build(
     sources: &Path,
     step: &BuildStep,
@@ -259,7 +260,7 @@ fn copy_file(
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
             Err(error) => return Err(unreadable(from, error)),
         };
-        // The file may have grown since anybody looked at its length.
+        // The file may have grown since its length was read.
         *room = room.checked_sub(read.len() as u64).ok_or_else(too_large)?;
         hasher.update(read);
         executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
@@ -282,13 +283,13 @@ fn too_large() -> CopyError {
     ))
 }
 
-/// How many bytes and files of a submission may still be copied.
+/// The numbers of bytes and files of a submission that may still be copied.
 struct CopyBudget {
     bytes: u64,
     files: u64,
 }
 
-/// Copies a submission's folder to a new one that only we may enter.
+/// Copies a submission's folder to a new folder that only we may enter.
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
     let mut budget = CopyBudget { bytes: LARGEST_FOLDER, files: MOST_FILES };
     let source = OpenFolder::open(from).map_err(|error| unreadable(from, error))?;
@@ -424,7 +425,7 @@ mod tests {
             });
             for round in 0..ROUNDS {
                 let copy = folder.path().join(format!("copy{round}"));
-                // It may fail because an entry has gone; the rest of the folder is then the submission's own fault.
+                // It may fail because an entry was removed; the rest of the folder is then the submission's own fault.
                 if !matches!(copy_sources(&sources, &copy), Err(CopyError::Ours(_))) {
                     let text = std::fs::read_to_string(copy.join(file)).unwrap_or_default();
                     assert!(!text.contains("secret"), "a link was followed");

@@ -14,7 +14,7 @@ pub struct SceneTask {
     pub xml: Vec<u8>,
     /// The scene itself.
     pub scene: Scene,
-    /// The scene's recorded trace, compressed with zstd, when there is one.
+    /// The scene's recorded trace, compressed with zstd, if there is one.
     pub recording: Option<&'static [u8]>,
 }
 

@@ -1,7 +1,7 @@
-//! The grader's temporary folders, which nobody else reads, and what is left of those of graders that were killed.
+//! The grader's temporary folders, which no other user reads, and what killed graders have left.
 //!
-//! All of a grader's folders lie in one, in which a locked file says that the grader lives. A lock is seen wherever the
-//! folder is: by graders in other containers, too, to whom our process number means nothing or somebody else.
+//! All of a grader's folders are in one, in which a locked file shows that the grader lives. Graders in other
+//! containers see the lock, too, while our process number may be another process's there.
 use fosssim_sandbox::collect;
 use std::{
     fs::{self, File, Permissions},
@@ -12,7 +12,7 @@ use std::{
     time::Duration,
 };
 
-/// How the names of graders' folders begin.
+/// The beginning of graders' folders' names.
 const PREFIX: &str = "fosssim-grader-";
 /// The file in it that its grader holds locked.
 const LOCK: &str = "lock";
@@ -25,14 +25,14 @@ pub(super) struct TemporaryFolder {
 }
 
 impl TemporaryFolder {
-    /// Makes one; its name begins with its purpose.
+    /// Makes a folder; its name begins with its purpose.
     pub(super) fn make(purpose: &str) -> io::Result<Self> {
         let grader = Grader::this()?;
         let made = closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
-            // Build tools ask for files by their whole path, and run as another user. What lies here is closed by
-            // itself.
+            // Build tools name files by their whole path, and run as another user. The entries here are closed by
+            // themselves.
             fs::set_permissions(&path, Permissions::from_mode(0o711))?;
         }
         Ok(Self { path, _grader: grader })
@@ -56,13 +56,13 @@ impl Drop for TemporaryFolder {
 pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
 impl Folders {
-    /// Returns a folder with nothing in it but what the grader left in one that was [kept](Self::keep).
+    /// Returns a folder with only the files that the grader left in one that was [kept](Self::keep).
     pub(super) fn take(&self) -> io::Result<TemporaryFolder> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         kept.map_or_else(|| TemporaryFolder::make("run"), Ok)
     }
 
-    /// Keeps a folder in which nobody but the grader has changed anything.
+    /// Keeps a folder in which only the grader has changed anything.
     pub(super) fn keep(&self, folder: TemporaryFolder) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(folder);
     }
@@ -76,7 +76,7 @@ struct Grader {
 }
 
 impl Grader {
-    /// Returns the one that is there, or a new one.
+    /// Returns the existing folder, or a new one.
     fn this() -> io::Result<Arc<Self>> {
         static THIS: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
         let mut this = THIS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -145,7 +145,7 @@ fn sweep_in(place: &Path) {
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let path = entry.path();
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
-        // The entry itself and not what a link leads to. Other users' folders are left to them.
+        // The entry itself and not a link's target. Other users' folders are left to them.
         if !ours || !entry.metadata().is_ok_and(|data| data.is_dir() && data.uid() == own.uid()) {
             continue;
         }
@@ -159,8 +159,8 @@ fn sweep_in(place: &Path) {
     }
 }
 
-/// Removes a grader's folder, its lock last: what is left over without a lock would count as being made. A supervisor
-/// that has only just noticed the end of its grader may still be at work in it for a moment.
+/// Removes a grader's folder, its lock last: a folder without a lock would count as being made. A supervisor that has
+/// only just noticed the end of its grader may still be at work in it for a moment.
 fn clear(path: &Path) {
     const TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(50);
@@ -186,7 +186,7 @@ mod tests {
         let left = killed.path.clone();
         fs::create_dir_all(left.join("run-1").join("d/".repeat(1500))).unwrap();
         fs::write(living.path.join("program"), "x").unwrap();
-        // As a kill does: the lock goes, the folder stays.
+        // As after a kill: the lock is released, the folder stays.
         let Grader { path: _, _lock: ref lock } = killed;
         lock.unlock().unwrap();
         std::mem::forget(killed);

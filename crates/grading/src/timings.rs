@@ -1,4 +1,4 @@
-//! Where the processor time of runs goes, for `grade --timings`.
+//! Measures the processor time of each part of runs, for `grade --timings`.
 use fosssim_sandbox::{TimeOf, processor_time};
 use std::{
     collections::BTreeMap,
@@ -17,7 +17,7 @@ pub enum RunPart {
     Judging,
     /// The working folder is emptied.
     CleanUp,
-    /// The grader looks for the mistake.
+    /// The grader searches for the mistake.
     Explaining,
     /// The grader draws what pages show.
     Drawing,
@@ -53,7 +53,7 @@ impl Timings {
     }
 }
 
-/// Measures the parts of one run on its thread; without somebody who asks it reads no clock.
+/// Measures the parts of one run on its thread; without `--timings` it reads no clock.
 pub(super) struct Stopwatch<'a> {
     timings: Option<&'a Timings>,
     last: Duration,
@@ -65,7 +65,7 @@ impl<'a> Stopwatch<'a> {
         Self { timings, last: timings.map_or(Duration::ZERO, |_| processor_time(TimeOf::Thread)) }
     }
 
-    /// Adds what was taken since the last part to this one.
+    /// Adds the time since the last part to this one.
     pub(super) fn end(&mut self, part: RunPart) {
         if let Some(timings) = self.timings {
             let now = processor_time(TimeOf::Thread);

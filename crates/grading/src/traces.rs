@@ -1,5 +1,4 @@
-//! Grades by traces that are there already. Nothing is run: how long a program took, and that it ended well, nobody
-//! knows.
+//! Grades by existing traces. No program is run: its time, and whether it ended well, are unknown.
 use super::{
     conclude::{CountedReader, ProgramRun, Run, conclude},
     grade::Grade,

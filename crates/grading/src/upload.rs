@@ -12,7 +12,7 @@ const NAMED: usize = 6;
 const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
 
-/// Returns why there is nothing to run: what was looked for, and what is there instead.
+/// Returns why there is no program to run: the expected name, and what there is instead.
 pub(super) fn without(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => found(program, &opened),

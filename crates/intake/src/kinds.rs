@@ -1,4 +1,4 @@
-//! The kinds of files, told by their first bytes: nothing else of a file that was handed in is read for that.
+//! The kinds of files, found by their first bytes: nothing else of a submitted file is read for that.
 
 /// The kind of a file, by its first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,11 +25,11 @@ pub enum ArchiveKind {
 /// The archives that are unpacked, in words.
 pub const KNOWN: &str = ".zip, .tar.gz, .tar";
 
-/// The first bytes that tell what a file is.
+/// The number of first bytes that show what a file is.
 pub const START: usize = 512;
 
 impl FileKind {
-    /// Tells what a file is that begins with these bytes, at most [`START`] of them.
+    /// Returns the kind of a file that begins with these bytes, at most [`START`] of them.
     #[must_use]
     pub fn from_start(start: &[u8]) -> Self {
         match start {
@@ -42,7 +42,7 @@ impl FileKind {
     }
 }
 
-/// Describes a file that begins with these bytes, for a message about what was found.
+/// Describes a file that begins with these bytes, for a message about it.
 #[must_use]
 pub fn described(start: &[u8]) -> String {
     let known: [(&[u8], &str); 17] = [

@@ -1,7 +1,7 @@
 //! Intake of the command line and the service: archives of sources and of suites, and the kinds of files.
 //!
-//! Nothing is taken over from an archive that a usual packer would not make: no way out of the folder, no links, no
-//! devices, no two files of one name, no more bytes than allowed when unpacked. Files that managers of files and build
+//! Nothing is unpacked from an archive that a usual packer would not make: no way out of the folder, no links, no
+//! devices, no two files of one name, no more bytes than allowed when unpacked. Files that file managers and build
 //! tools make by themselves are passed over.
 //!
 //! ```
@@ -29,7 +29,7 @@ use std::{
 };
 use thiserror::Error;
 
-/// How large what is unpacked may be.
+/// The largest size of unpacked files.
 #[derive(Debug, Clone, Copy)]
 pub struct ArchiveLimits {
     /// Bytes in all.
@@ -41,13 +41,13 @@ pub struct ArchiveLimits {
 /// The greatest depth of its folders.
 const DEEPEST: usize = 64;
 
-/// The most bytes of an archive's list of files, and of what an archive says of a single file beside its contents. A
-/// list of 20,000 usual names has 4 MiB.
+/// The most bytes of an archive's list of files, and of an archive's data about a single file in addition to its
+/// contents. A list of 20,000 usual names has 4 MiB.
 const LONGEST_LIST: u64 = 16 << 20;
 /// See [`LONGEST_LIST`].
 const LONGEST_HEADER: u64 = 1 << 20;
 
-/// The bytes that may be read for a file beside its contents: headers, padding, and what is read ahead.
+/// The bytes that may be read for a file in addition to its contents: headers, padding, and what is read ahead.
 const BESIDE: u64 = 64 << 10;
 
 impl ArchiveLimits {
@@ -95,7 +95,7 @@ pub enum ArchiveError {
     Folder(io::Error),
 }
 
-/// Looks an archive through to its end and returns the paths of its files.
+/// Reads an archive to its end and returns the paths of its files.
 ///
 /// # Errors
 /// Its fault.
@@ -103,11 +103,11 @@ pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>
     walk(archive, limits, None)
 }
 
-/// Unpacks an archive into a folder that is there and empty, and returns the paths of its files. Files that begin as
-/// programs are executable, whatever the archive says: those of Windows and of many web pages keep no such bit.
+/// Unpacks an archive into an empty folder, and returns the paths of its files. Files that begin as programs are
+/// executable, whatever the archive's bits are: archives of Windows and of many web pages have no such bit.
 ///
 /// # Errors
-/// The first thing that is wrong with it; the folder may hold a part of it then.
+/// Its first fault; the folder may hold a part of it then.
 pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, Some(folder))
 }
@@ -125,7 +125,7 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
 
 /// Returns whether a file manager or a build tool puts a file or folder of this name there by itself, and not the
 /// person who hands it in: Finder's attributes and notes on windows, Explorer's on pictures, what CMake remembers of a
-/// build on another machine (it refuses to build here because of it).
+/// build on another machine (which prevents a build here).
 #[must_use]
 pub fn is_litter(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
@@ -137,7 +137,7 @@ pub fn is_litter(name: &OsStr) -> bool {
 /// An archive being walked through.
 struct Walk<'a> {
     limits: ArchiveLimits,
-    /// Where what is in the archive goes; nowhere where it is only looked at.
+    /// The folder for the archive's files; `None` if the archive is only checked.
     folder: Option<&'a Path>,
     entries: usize,
     bytes: u64,
@@ -165,8 +165,8 @@ fn damaged(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
-/// Returns how many entries a zip archive says that it has, by its end record (APPNOTE 4.3.16), or the one of large
-/// archives (4.3.14) where that says so.
+/// Returns the number of entries that a zip archive claims, by its end record (APPNOTE 4.3.16), or by the one of large
+/// archives (4.3.14) if the end record refers to it.
 fn announced(file: &mut File) -> io::Result<Option<u64>> {
     /// Both records, the pointer between them, and the longest comment behind them.
     const LONGEST: u64 = 56 + 20 + 22 + 0xffff;
@@ -192,7 +192,7 @@ fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Reads what an archive says of the next file.
+/// Reads an archive's data about the next file.
 fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     let mut header = Vec::new();
     entry.take(LONGEST_HEADER + 1).read_to_end(&mut header).map_err(damaged)?;
@@ -218,16 +218,16 @@ impl Walk<'_> {
 
     fn walk_zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let announced = announced(&mut file).map_err(ArchiveError::Read)?;
-        // The library reads the list of all before it shows one.
+        // The library reads the list of all files before it shows one.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
         let packed = file.metadata().map_err(ArchiveError::Read)?.len();
         let meter = Meter::new(LONGEST_LIST);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(damaged)?;
-        // Files may lie in one another, and be empty however long they are.
+        // Files may overlap in the archive, and be empty however long they are.
         meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
-        // The library keeps one entry of each name, and nobody could tell which one was meant.
+        // The library keeps one entry of each name, and the intended one would be unclear.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
         }
@@ -282,7 +282,7 @@ impl Walk<'_> {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
                     self.unpack_file(&name, executable, &mut entry)?;
                 }
-                // Says something about the archive, and is no entry of it.
+                // Describes the archive, and is no entry of it.
                 tar::EntryType::XGlobalHeader => {}
                 _ => return Err(ArchiveError::Kind(shown(&name))),
             }
@@ -316,7 +316,7 @@ impl Walk<'_> {
         Ok(path)
     }
 
-    /// Notes the folders above a file; none of them may be a file.
+    /// Notes the folders above a file; none of these may be a file.
     fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
             if self.seen.contains(folder) {
@@ -365,7 +365,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Copies a file and returns its kind. What really comes out is counted: an archive may say anything of its sizes.
+    /// Copies a file and returns its kind. The unpacked bytes are counted: an archive may claim anything about its
+    /// sizes.
     fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
         const AT_ONE_GO: u64 = 64 << 10;
         let mut chunk = Vec::new();

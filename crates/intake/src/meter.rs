@@ -1,4 +1,4 @@
-//! How much may be read, whatever reads it: what an archive makes its readers do has an end.
+//! A limit for reading, for all readers together: an archive can't make its readers work forever.
 use std::{
     cell::Cell,
     io::{self, Read, Seek, SeekFrom},
@@ -17,12 +17,12 @@ pub(crate) struct MeteredReader<R> {
 }
 
 impl Meter {
-    /// Lets this many bytes be read.
+    /// Creates a limit of this many bytes.
     pub(crate) fn new(bytes: u64) -> Self {
         Self(Rc::new(Cell::new(bytes)))
     }
 
-    /// Lets this many bytes be read from now on.
+    /// Sets the limit to this many bytes from now on.
     pub(crate) fn set(&self, bytes: u64) {
         self.0.set(bytes);
     }

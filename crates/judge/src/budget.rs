@@ -1,16 +1,16 @@
-//! How much work judging one trace may take.
+//! Limits the work that judging one trace may take.
 //!
-//! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute: states from
-//! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds,
-//! thousands of times what the scene's own run costs, and the fair rules repeat such steps. Subnormal numbers slow
-//! processors down besides, and root searches and Newton's method may take many steps. All this is counted
+//! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute. States from
+//! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds. That is
+//! thousands of times the cost of the scene's own run, and the fair rules repeat such steps. Subnormal numbers slow
+//! processors down as well, and root searches and Newton's method may take many steps. All this is counted
 //! ([`Simulation::work`]) and not measured by a clock: the same bytes have the same verdict on every machine.
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Observer, RootSearch, Simulation, StepError, pairs},
 };
 
-/// The work that every trace may ask for, however simple its scene is: about a tenth of a second's.
+/// The work that every trace may cause, however simple its scene is: about a tenth of a second's.
 pub(crate) const FLOOR: u64 = 1_000_000;
 
 /// Beyond that, this multiple of the scene's own run by the original's rules ...
@@ -39,8 +39,8 @@ impl<'a> Budget<'a> {
         Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
     }
 
-    /// Creates a budget with another floor: every trace may ask for so much, and nothing is allowed before the scene's
-    /// own run is known.
+    /// Creates a budget with another floor: every trace may cause this much work, and nothing is allowed before the
+    /// scene's own run is known.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
         Self { rest: floor, at_least: 0, ..self }
     }
@@ -51,7 +51,7 @@ impl<'a> Budget<'a> {
         self.rest
     }
 
-    /// Takes `work` away; false, if there is not so much.
+    /// Takes `work` away, and returns false if there is not enough left.
     pub fn spend(&mut self, work: u64) -> bool {
         if work > self.rest {
             self.widen();
@@ -76,7 +76,7 @@ impl<'a> Budget<'a> {
         result
     }
 
-    /// Adds what the scene's own run allows, once. Whether it added anything.
+    /// Adds the work of the scene's own run, once, and returns whether it added anything.
     pub fn widen(&mut self) -> bool {
         if std::mem::replace(&mut self.is_wide, true) {
             return false;

@@ -1,11 +1,10 @@
-//! Which of a record's impulses are about a pair: a trace may log a million, and nobody shall search them all for each
-//! pair.
+//! Finds a record's impulses for a pair: a trace may log a million, which must not all be searched for each pair.
 use fosssim_model::{sim::Pair, trace::LoggedImpulse};
 
 /// Kind and numbers of a pair as they are logged.
 pub(crate) type PairKey = (i32, i32, i32);
 
-/// Returns the key of a pair; `None` where the format has no numbers for it, so that no trace logs it.
+/// Returns the key of a pair; `None` if the format has no numbers for it, so that no trace logs it.
 pub(crate) fn key(pair: Pair) -> Option<PairKey> {
     Some((pair.kind.code(), i32::try_from(pair.first).ok()?, i32::try_from(pair.second).ok()?))
 }

@@ -1,4 +1,4 @@
-//! The beginning of a trace that comes once, kept while it is read: explanations and pictures read it again.
+//! The beginning of a trace that can be read only once, kept while it is read: explanations and pictures read it again.
 use std::io::{self, Read};
 
 /// The greatest number of bytes that are kept. The course's largest trace has 18 MB. Lowered, mistakes in longer traces
@@ -15,7 +15,7 @@ pub struct KeptTrace {
 }
 
 impl KeptTrace {
-    /// Keeps at most `most` bytes, which is next to nothing for a trace that nobody asks about again.
+    /// Creates a store for at most `most` bytes, which is next to nothing for a trace that is not needed again.
     #[must_use]
     pub const fn new(most: usize) -> Self {
         Self { bytes: Vec::new(), most, has_ended: false, is_cut: false }

@@ -1,5 +1,5 @@
 //! The verdict on one trace: the original's rules (`parity`), the fair ones (`fair`), findings, and where trace and
-//! reference first part.
+//! reference first differ.
 //!
 //! Knows nothing of processes and reports; it takes a scene and a reader, and yields typed findings. The rules are
 //! those of `oracle-behavior.md`, sections 4 to 6.

@@ -1,13 +1,13 @@
-//! How traces are judged.
+//! The options for judging traces.
 use super::rules::Book;
 use fosssim_model::sim::RootSearch;
 
-/// How to judge.
+/// The options for judging.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Number of threads that judge steps; the results do not depend on it. 0 takes one per core, eight at most.
     pub threads: usize,
-    /// Whether certificates may stand in for root searches.
+    /// Whether certificates may replace root searches.
     pub root_search: RootSearch,
     /// Stop after the first step with a finding (a hopeless run is cut short; the outcome then has no verdict).
     pub stop_at_first: bool,

@@ -1,4 +1,4 @@
-//! One decision of `simple` handling, looked at closely: overlap and approach at the end of the step (collisions.md 6).
+//! One decision of `simple` handling in detail: overlap and approach at the end of the step (collisions.md 6).
 //!
 //! Judges nothing. A decision is certain if it stays the same in runs from states that are off by some roundings, as
 //! the fair rules try it.
@@ -14,8 +14,8 @@ use fosssim_num::vector::{Vec2, at, length};
 pub struct OverlapStudy {
     /// The pair, with its motion within the step.
     pub motion: PairMotion,
-    /// The velocities of its bodies as it is looked at, after the responses to earlier pairs: of the particle, and of
-    /// the second particle or of the nearest point of the edge; a half-plane rests.
+    /// The velocities of its bodies at the check, after the responses to earlier pairs: of the particle, and of the
+    /// second particle or of the nearest point of the edge. A half-plane rests.
     pub velocities: [Vec2; 2],
     /// The nearest point of an edge, from 0 at its first end to 1 at its second.
     pub alpha: Option<f64>,
@@ -30,10 +30,10 @@ pub struct OverlapStudy {
 }
 
 impl OverlapStudy {
-    /// Looks at a pair in a step that starts from `before`; `None` where the scene never asks about it.
+    /// Examines a pair in a step that starts from `before`; `None` if the scene never checks it.
     ///
     /// # Errors
-    /// [`StepError`], where the step has no result.
+    /// [`StepError`], if the step has no result.
     pub fn for_pair(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
         let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let mut run = |seed| {
@@ -57,14 +57,14 @@ impl OverlapStudy {
         length(self.normal)
     }
 
-    /// Returns how fast they approach, times the distance: above zero if they do.
+    /// Returns the speed at which they approach, times the distance: above zero if they approach.
     #[must_use]
     pub fn approach(&self) -> f64 {
         (self.velocities[0] - self.velocities[1]).dot(&self.normal)
     }
 }
 
-/// Notes a pair as it is looked at.
+/// Notes a pair when it is checked.
 struct PairWatch<'a> {
     scene: &'a Scene,
     pair: Pair,

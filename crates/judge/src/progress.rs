@@ -1,11 +1,12 @@
-//! Progress of judging, as it is told to others.
+//! Reports the progress of judging.
 use super::{
     counts::FindingCounts,
     finding::{Finding, FindingKind},
 };
 use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 
-/// Hears how judging goes, in the order of the steps whatever the number of threads. Methods do nothing by default.
+/// Observes the progress of judging, in the order of the steps whatever the number of threads. Methods do nothing by
+/// default.
 pub trait Progress {
     /// Reports that the initial record has been read and judging begins.
     fn begins(&mut self) {}
@@ -13,7 +14,7 @@ pub trait Progress {
     fn step_begins(&mut self, _step: u32) {}
     /// Reports that a step has been judged.
     fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
-    /// Reports that the step holds something wrong; not called for what is left of damaged records.
+    /// Reports that the step holds a fault; not called for the rest of damaged records.
     fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
 }
 
@@ -24,7 +25,7 @@ pub struct WrongStep<'a> {
     pub step: u32,
     /// The findings by the original's rules.
     pub parity: StepFindings<'a>,
-    /// The findings by the fair rules; empty when they were not asked. Findings that only the whole trace shows, such
+    /// The findings by the fair rules; empty if they were not requested. Findings that only the whole trace shows, such
     /// as mixed forms, are not among them.
     pub fair: StepFindings<'a>,
 }
@@ -40,7 +41,7 @@ pub struct StepFindings<'a> {
 
 impl Progress for () {}
 
-/// Two that hear the same, one after the other.
+/// Two observers that are called one after the other.
 pub struct BothObservers<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
 
 impl Progress for BothObservers<'_> {

@@ -1,7 +1,7 @@
 //! Judging against a recording instead of the reference simulator: frame by frame, by the same tolerances.
 //!
-//! Unlike lock step, errors accumulate here: after the first difference the two runs are two different runs, and what
-//! follows says little. But nothing is taken over from the submission, so wrong initial states, responses and
+//! Unlike lock step, errors accumulate here: after the first difference the two runs are two different runs, and later
+//! differences prove little. However, nothing is taken over from the submission, so wrong initial states, responses and
 //! integrators show, which the original's rules let pass (oracle-behavior.md 8.1 to 8.3). Both frames of a step are
 //! compared, and the initial record.
 use super::{
@@ -109,7 +109,7 @@ fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }
 
-/// Which polynomial of a step belongs to which pair.
+/// The pair of each polynomial of a step.
 struct RecordPlaces {
     pairs: Pairs,
     continuous: bool,
@@ -120,10 +120,10 @@ impl RecordPlaces {
         Self { pairs: pairs(scene), continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }
 
-    /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not tell where the impulse
+    /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not show where the impulse
     /// rounds end, so passes are counted as rounds.
     fn at(&self, index: usize) -> PolynomialPlace {
-        // A scene without pairs has no recording with polynomials; of one that has, the place is nobody's.
+        // A scene without pairs has no recording with polynomials, so no reader sees this place.
         let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
         let (number, pair, which) = self.pairs.polynomial(index).unwrap_or(nobody);
         let round = u32::try_from(number).unwrap_or(u32::MAX);

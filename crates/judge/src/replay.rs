@@ -1,7 +1,7 @@
 //! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
 //!
 //! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's own
-//! state (oracle-behavior.md 4.2). So while one batch is judged, on all threads, the next one is read. What is
+//! state (oracle-behavior.md 4.2). Therefore the next batch is read while one is judged on all threads. What is
 //! reported, and in which order, does not depend on the number of threads.
 mod contest;
 mod workers;
@@ -31,7 +31,7 @@ use workers::Workers;
 
 /// A batch is full when its frames hold this many bytes ...
 const BATCH_BYTES: usize = 1 << 18;
-/// ... but beside one that holds more than this, no other is read: one record is enough to have in memory then.
+/// ... but next to a batch with more than this, no other is read: one record in memory is enough then.
 const LARGE_BATCH_BYTES: usize = 1 << 24;
 /// ... or this many steps ...
 const BATCH_STEPS: usize = 256;
@@ -54,7 +54,7 @@ struct StepSlot {
     fair: StepJudgement,
     /// Whether the fair rules have to know the reference's own run.
     is_extraordinary: bool,
-    /// Whether they have to know it before they look at the step.
+    /// Whether they must be known before the step is judged.
     is_put_off: bool,
     error: Option<StepError>,
     /// Whether more polynomials would have to be compared than were kept.
@@ -80,17 +80,17 @@ struct Batch {
 
 /// Judges a trace by both books, as the original does in lock step with the reference: each step starts from the
 /// trace's own state, takes over its mid record, and is compared with its end record (oracle-behavior.md 4 to 6).
-/// Memory does not depend on the trace's length. What follows the last record is not read, save for one byte that tells
-/// whether it is there.
+/// Memory does not depend on the trace's length. Bytes behind the last record are not read, except one that shows
+/// whether there are any.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
     judge_within(record_memory(scene), None, scene, &mut trace, options, progress)
 }
 
-/// Judges as [`judge`] does, with so much memory for the lists of a record, in bytes, and another floor of work, if one
-/// is given.
+/// Judges as [`judge`] does, with this much memory for the lists of a record, in bytes, and another floor of work, if
+/// one is given.
 ///
-/// It is compiled once and here, whatever the trace comes from: what is generic is compiled where it is used, at that
-/// crate's level.
+/// It is compiled only here, for every source of traces: generic code is compiled where it is used, at that crate's
+/// level.
 pub(super) fn judge_within(
     memory: usize,
     floor: Option<u64>,
@@ -115,7 +115,7 @@ pub(super) fn judge_within(
 struct StepRules<'a> {
     layout: Layout,
     logs_impulses: bool,
-    /// The facts for the fair rules, as long as these are asked.
+    /// The facts for the fair rules, as long as these judge.
     fair: Option<Context<'a>>,
 }
 
@@ -127,17 +127,17 @@ struct Replay<'a, R> {
     /// The end state of the last step that was read.
     state: State,
     steps_read: u32,
-    /// The bound beyond which nothing leads anywhere by the fair rules, if they are asked.
+    /// The states that lead nowhere by the fair rules, if these judge.
     reach: Option<Reach<'a>>,
-    /// The work that is left to each book: the original's, which are asked always, and the fair one's. What one of them
-    /// costs is nothing to the other.
+    /// The work that is left to each book: the original's, which always judges, and the fair one's. The cost of one
+    /// does not count for the other.
     budgets: [Budget<'a>; 2],
     order: ContestOrder,
     /// Damage of the record that could not be read at last.
     damage: Option<Damage>,
     /// Whether a record of the steps delivered so far, or the first one, is damaged.
     damaged: bool,
-    /// The judgement of the fair rules so far, if they are asked.
+    /// The judgement of the fair rules so far, if they judge.
     judging: Option<Box<Judging>>,
     outcome: Outcome,
 }
@@ -154,7 +154,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mut stop = self.read_batch(&mut current);
         let mut workers = Workers::new(self.scene, options);
         loop {
-            // A trace that fits into one batch is judged before threads have started, unless somebody asks for them.
+            // A trace that fits into one batch is judged before threads have started, unless threads were requested.
             let is_last = stop.is_some() || self.complete();
             let mut stop_after = None;
             let at_once = !is_last && current.is_waiting() && current.bytes <= LARGE_BATCH_BYTES && workers.has_pool();
@@ -320,7 +320,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Ok(())
     }
 
-    /// Hands the batch's results on in the order of the steps. Whether judging is over.
+    /// Delivers the batch's results in the order of the steps, and returns whether judging is over.
     fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, options: &Options) -> bool {
         for slot in &mut batch.slots[..batch.filled] {
             let slot = lock(slot);
@@ -344,7 +344,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             }
             tally::accumulate(&mut parity.residuals, &slot.result.residuals);
             parity.findings.counts += slot.result.counts;
-            // The rest of a damaged record counts for the original, but nobody is to blame for its numbers.
+            // The rest of a damaged record counts for the original, but its numbers prove no mistake.
             if !self.damaged {
                 slot.result.firsts.iter().for_each(|first| parity.findings.keep_first(first));
                 self.deliver_fair(slot);
@@ -378,7 +378,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         false
     }
 
-    /// Adds what the fair rules say of a step, until they are given up.
+    /// Adds the fair rules' findings about a step, until these rules are given up.
     fn deliver_fair(&mut self, slot: &mut StepSlot) {
         let (Some(judging), Some(context), Some(reach)) = (&mut self.judging, &self.shape.fair, &mut self.reach) else {
             slot.fair = StepJudgement::default();
@@ -414,7 +414,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 }
 
-/// Returns the stop at an end record that is as long as the reference's, and longer than what was kept.
+/// Returns the stop at an end record that is as long as the reference's, and longer than the kept part.
 fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
     let (logged, kept) = (slot.end.logged, slot.end.polynomials.len());
     Stop::Trace {

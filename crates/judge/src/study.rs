@@ -1,9 +1,10 @@
-//! One detection call, looked at closely: polynomials, zeros, where each is positive, where all are, and what follows.
+//! One detection call in detail: its polynomials, their zeros, the times at which each is positive and all are, and the
+//! result.
 //!
 //! Judges nothing. The numbers are those of the reference, bit for bit: its formulas, its root finder, its sets of
-//! times (collisions.md 2, root-finder.md 15 and 16). Beside the course's approach polynomial of a particle and an edge
-//! stands the mathematically right one (numerics.md 1), and beside the reference's decision whether round-off may flip
-//! it.
+//! times (collisions.md 2, root-finder.md 15 and 16). Next to the course's approach polynomial of a particle and an
+//! edge is the mathematically right one (numerics.md 1), and next to the reference's decision whether round-off may
+//! flip it.
 use crate::{
     fair::{compare::compare, decides, formulas},
     finding::Role,
@@ -31,7 +32,7 @@ pub struct Curve {
     pub logged: Polynomial,
     /// The zeros as the reference's root finder gives them, in its order: real and imaginary part.
     pub zeros: Vec<(f64, f64)>,
-    /// Where it is positive, over all times; sorted and apart.
+    /// Intervals in which it is positive, over all times; sorted and disjoint.
     pub positive: Vec<Interval>,
 }
 
@@ -71,7 +72,7 @@ pub struct NoAnswer {
 /// The decision of a list of polynomials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Where all are positive, over all times; sorted and apart. A set may be a single time.
+    /// Intervals in which all are positive, over all times; sorted and disjoint. An interval may be a single time.
     pub positive: Vec<Interval>,
     /// The decision.
     pub decision: Decision,
@@ -102,7 +103,7 @@ impl Answer {
 /// Room for the common times of four polynomials.
 const SETS: usize = 32;
 
-/// The mathematically right approach polynomial of a particle and an edge, and what it decides in the course's place.
+/// The mathematically right approach polynomial of a particle and an edge, and the decision that follows from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RightApproach {
     /// The polynomial; it differs from the course's in t^3 only.
@@ -111,7 +112,7 @@ pub struct RightApproach {
     pub answer: Answer,
 }
 
-/// A detection call, looked at closely.
+/// A detection call in detail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
     /// The pair and how it moves.
@@ -120,17 +121,17 @@ pub struct Study {
     pub curves: Vec<Curve>,
     /// The reference's decision.
     pub answer: Answer,
-    /// Whether the pair collides whatever rounding does to a correct program; `None` where round-off may flip it.
+    /// Whether the pair collides whatever rounding does to a correct program; `None` if round-off may flip it.
     pub certain: Option<bool>,
     /// The right approach polynomial, where it is another one than the course's.
     pub right_approach: Option<RightApproach>,
 }
 
 impl Study {
-    /// Looks at a pair that moves like this.
+    /// Examines a pair with this motion.
     ///
     /// # Errors
-    /// [`NoAnswer`], where the original hangs.
+    /// [`NoAnswer`], if the original hangs.
     pub fn for_motion(motion: &PairMotion) -> Result<Self, NoAnswer> {
         let kind = motion.kind();
         let polynomials = motion.polynomials();
@@ -155,8 +156,8 @@ impl Study {
         Ok(Self { motion: *motion, curves, answer, certain, right_approach })
     }
 
-    /// Returns whether a logged polynomial is right by the fair rules: but for a positive factor, round-off, and small
-    /// leading coefficients.
+    /// Returns whether a logged polynomial is right by the fair rules: except for a positive factor, round-off, and
+    /// small leading coefficients.
     #[must_use]
     pub fn is_right(&self, number: usize, logged: &[f64]) -> bool {
         let expected = formulas::BoundedPairMotion::from(&self.motion).polynomials();
@@ -165,7 +166,7 @@ impl Study {
     }
 }
 
-/// Returns the course's approach polynomial with the right t^3 coefficient, if that is another one.
+/// Returns the course's approach polynomial with the right t^3 coefficient, if the two differ.
 fn right_approach(polynomials: &[Polynomial], expected: &formulas::ExpectedPolynomials) -> Option<Polynomial> {
     let (course, right) = (expected.polynomial(3), expected.other_form(3)?);
     // The power t^3 of a quintic.
@@ -252,7 +253,7 @@ mod tests {
         assert_eq!(study.answer.positive[0].lo, time);
         assert_eq!(motion.normal(time), Some(normal));
         assert_eq!(study.certain, Some(true));
-        // The edge turns: the right polynomial is another one, in t^3 only, and the contact is the same.
+        // The edge turns: the right polynomial differs, in t^3 only, and the contact is the same.
         let right = study.right_approach.unwrap();
         let (course, right_one) = (study.curves[3].untrimmed, right.curve.untrimmed);
         let differing: Vec<usize> =

@@ -36,7 +36,7 @@ const SAFE_SUM: f64 = 1e5;
 pub(super) struct StepResult {
     /// The original's lines about this step, in its order.
     pub(super) remarks: Vec<Remark>,
-    /// How many findings of each kind.
+    /// The number of findings of each kind.
     pub(super) counts: FindingCounts,
     /// The first finding of each kind, in the order in which they were found.
     pub(super) firsts: Vec<Finding>,
@@ -57,7 +57,7 @@ impl StepResult {
         self.identical = false;
     }
 
-    /// Returns how many findings of each kind there are besides the first.
+    /// Returns the number of findings of each kind after the first.
     pub(super) fn more(&self) -> FindingCounts {
         let mut more = FindingCounts::default();
         for kind in self.firsts.iter().map(Finding::kind) {
@@ -78,7 +78,7 @@ impl StepResult {
 /// Buffers of a tally, kept from step to step.
 #[derive(Debug, Default)]
 pub(super) struct Buffers {
-    /// The pairs that a pass looks at.
+    /// The pairs that a pass checks.
     order: Pairs,
     /// The reference's polynomials of the current pass.
     own: PolynomialBytes,
@@ -140,7 +140,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Returns how the trace's next polynomial compares with the one of these bytes.
+    /// Returns the comparison of the trace's next polynomial with the one of these bytes.
     #[inline]
     fn likeness(&self, own: &[u8]) -> Likeness {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
@@ -204,7 +204,7 @@ impl<'a> Tally<'a> {
         for expected in &own {
             let Some(actual) = logged(expected).map(|index| &theirs[index]) else { continue };
             let residual = length(actual.normal - expected.normal);
-            // Parity's exception: a NaN normal passes, because the original asks whether the distance is larger.
+            // Parity's exception: a NaN normal passes, because the original tests whether the distance is larger.
             if residual > PARITY_NORMAL {
                 self.result.remarks.push(Remark::WrongNormal { actual: *actual, expected: *expected });
                 let detail = FindingDetail::WrongNormal { expected: *expected, actual: *actual, residual };
@@ -255,8 +255,8 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
-    /// Compares the next polynomial of the reference, as oracle-behavior.md 6.2 does; `place` says where it belongs,
-    /// should that be needed.
+    /// Compares the next polynomial of the reference, as oracle-behavior.md 6.2 does; `place` is its place, if that is
+    /// needed.
     pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
         self.polynomials += 1;
@@ -358,8 +358,8 @@ fn same_state(own: &State, other: &State) -> bool {
     same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
 }
 
-/// Returns whether the original finds nothing about a polynomial (oracle-behavior.md 6.2): it is right up to a factor,
-/// or zero, or holds what is no number.
+/// Returns whether the original accepts a polynomial (oracle-behavior.md 6.2): it is right up to a factor, or zero, or
+/// holds NaN.
 fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
@@ -372,19 +372,19 @@ fn passes(own: &[f64], actual: &[f64]) -> bool {
     own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
 }
 
-/// The facts about a polynomial of the trace that are known at once.
+/// The facts about a polynomial of the trace that are known immediately.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Likeness {
     /// The polynomial is the reference's bit for bit.
     Same,
-    /// The polynomial is not, and [`passes`] says yes.
+    /// The polynomial differs, and [`passes`] accepts it.
     Factor,
     /// Nothing.
     Open,
 }
 
-/// Returns how both compare, as far as one division for all coefficients tells: what it rounds otherwise than the
-/// original is less than a hundredth of the bound.
+/// Returns the comparison of both by one division for all coefficients: it rounds differently from the original by less
+/// than a hundredth of the bound.
 #[inline]
 fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())
@@ -445,7 +445,7 @@ mod tests {
         assert!(!equal_and_safe(&[1.0], &[1.0, 2.0]));
     }
 
-    /// A polynomial that clearly has a factor passes, too, and nearly every one that passes with a factor has it
+    /// A polynomial that clearly has a factor passes, too, and nearly every polynomial that passes with a factor has it
     /// clearly.
     #[test]
     fn what_clearly_has_a_factor_passes() {

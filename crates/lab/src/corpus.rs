@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct CorpusRow {
     /// The submission's name.
     pub submission: String,
-    /// The trace's kind; `a` are correct ones.
+    /// The trace's kind; `a` is a correct trace.
     pub kind: String,
     /// The scene's name.
     pub scene: String,

@@ -1,4 +1,4 @@
-//! Programs and scenes as the tools try them: the traces that programs write, and what the judge says of these.
+//! Programs and scenes as the tools try them: the traces that programs write, and the judge's results for these.
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
     judge::{
@@ -13,7 +13,7 @@ use fosssim_oracle::{
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Returns the trace that a program writes; where it does not come to an end, what it has written by then.
+/// Returns the trace that a program writes; if it does not end, the part written by then.
 #[must_use]
 pub fn trace(scene: &Scene, student: Student) -> Vec<u8> {
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)

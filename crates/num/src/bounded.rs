@@ -3,8 +3,8 @@
 //! A [`BoundedValue`] is a computed value with a count `units`: whatever order a correct program evaluates the same
 //! formula in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those
 //! of Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section
-//! 3.3), with the modulus of the operands instead of the result's for sums: so terms that cancel keep their weight, and
-//! the bound also covers other orders of summation. Nothing of this reaches a trace.
+//! 3.3), with the modulus of the operands instead of the result's for sums: terms that cancel therefore keep their
+//! weight, and the bound also covers other orders of summation. No bound reaches a trace.
 use super::{
     lanes::{Modulus, Number, Plane},
     vector::Vec2,
@@ -87,7 +87,7 @@ impl<N: Number + Modulus> Mul for BoundedValue<N> {
     }
 }
 
-/// A divisor of 0 gives what the division gives, and a bound that is infinite or NaN.
+/// A divisor of 0 gives the quotient of the division, and a bound that is infinite or NaN.
 impl Div for BoundedValue {
     type Output = Self;
     #[inline]
@@ -200,7 +200,7 @@ mod tests {
         assert_eq!((twice.x, twice.y), (b * vector.x, b * vector.y));
     }
 
-    /// `(a + b) - a` with a large `a`: the rest of `b` may be off by a rounding of `a`, and the bound says so.
+    /// `(a + b) - a` with a large `a`: the rest of `b` may be off by a rounding of `a`, and the bound must cover it.
     #[test]
     fn cancelled_terms_keep_their_weight() {
         let (a, b) = (BoundedValue::exact(1e10), BoundedValue::exact(0.1));
@@ -209,7 +209,7 @@ mod tests {
         assert!((left.value - 0.1).abs() <= left.bound * UNIT_ROUNDOFF);
     }
 
-    /// Neither value nor bound is larger than what sizes say, whatever the signs of the inputs.
+    /// Tests that neither value nor bound is larger than its size, whatever the signs of the inputs.
     #[test]
     fn sizes_are_the_most_that_values_and_bounds_can_be() {
         let number = |value: f64| BoundedValue { value, bound: 2.0 * value.abs() };

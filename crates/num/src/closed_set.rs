@@ -23,7 +23,7 @@ macro_rules! closed_set {
         $vis enum $set { $($(#[$about])* $variant,)+ }
 
         impl $set {
-            /// All of them, in their order.
+            /// All variants, in their order.
             $vis const ALL: [Self; [$(Self::$variant),+].len()] = [$(Self::$variant),+];
         }
     };

@@ -1,6 +1,6 @@
 //! The first time from which a list of polynomials is positive.
 //!
-//! Part II of root-finder.md: the zeros cut the line into gaps, one sample per gap says whether the polynomial is
+//! Part II of root-finder.md: the zeros cut the line into gaps, one sample per gap shows whether the polynomial is
 //! positive there, and the sets of all polynomials are intersected. The samples are taken at face value, as the
 //! original does: rounding may decide one, and zeros that the root finder did not find are simply missing.
 use super::{
@@ -77,7 +77,8 @@ fn intersected<'a, const CAPACITY: usize>(
 /// The positive set of one polynomial: before merging, at most one interval per gap between six zeros.
 pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 
-/// Returns where one polynomial is positive, judged by one sample per gap between its real zeros (root-finder.md 15.3).
+/// Returns the intervals in which one polynomial is positive, judged by one sample per gap between its real zeros
+/// (root-finder.md 15.3).
 ///
 /// # Errors
 /// [`DoesNotTerminate`] when the search for its zeros would never end.
@@ -99,7 +100,7 @@ fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNot
     let mut storage = [0.0; MAX_DEGREE];
     let breaks = sorted_real_parts(&zeros, &mut storage);
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
-        // No real zero is known: t = 0 stands for the whole line.
+        // No real zero is known: t = 0 represents the whole line.
         if evaluate(coefficients, 0.0) > 0.0 {
             set.push(Interval::EVERYTHING);
         }

@@ -6,7 +6,7 @@
 /// The times from `lo` to `hi`, either of which may be infinite. `lo <= hi` unless a bound is NaN.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Interval {
-    /// Where it starts, as a fraction of the step.
+    /// The begin of the interval, as a fraction of the step.
     pub lo: f64,
     /// The place where it ends.
     pub hi: f64,

@@ -1,5 +1,5 @@
-//! Several numbers that undergo the same operations at once, as processors do: the formulas of several pairs for the
-//! time of one.
+//! Several numbers that undergo the same operations together, as vector instructions do: the formulas of several pairs
+//! in the time of one.
 //!
 //! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on how numbers are put
 //! together. Only the sign of a NaN may differ, which is the compiler's choice: code that needs its bits keeps NaN out.
@@ -82,16 +82,15 @@ impl Default for Instructions {
     }
 }
 
-/// Fewer pairs than this in all steps of a scene are not worth looking for wide instructions: a virtual machine may
-/// take 0.1 ms to say what its processor can do.
+/// The number of pairs, in all steps of a scene, below which wide instructions are not worth a check: a virtual machine
+/// may take 0.1 ms to list its processor's instructions.
 const FEW_PAIRS: u64 = 1000;
 
 /// The number of unknowns of a system of linear equations.
 const FEW_UNKNOWNS: usize = 8;
 
 impl Instructions {
-    /// Returns the widest instructions for this many pairs in all steps of a scene, if looking for them is worth the
-    /// time.
+    /// Returns the widest instructions for this many pairs in all steps of a scene, if the check is worth the time.
     #[must_use]
     pub fn for_pairs(pairs: u64) -> Self {
         if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
@@ -176,8 +175,8 @@ impl<S: Simd> Lanes<S> {
         S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.values;
     }
 
-    /// Writes the numbers of each lane one behind the other, four at a time; those of the next lane begin `stride`
-    /// later.
+    /// Writes the numbers of each lane one behind the other, four at a time; the numbers of the next lane begin
+    /// `stride` later.
     ///
     /// # Panics
     /// When the slice is too short.
@@ -221,31 +220,31 @@ impl<S: Simd> Lanes<S> {
         self.simd.reduce_max_f64s(self.values)
     }
 
-    /// Returns where a lane is less than the other one.
+    /// Returns the lanes in which a number is less than the other.
     #[inline(always)]
     pub fn lt(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_f64s(self.values, other.values) }
     }
 
-    /// Returns where a lane is less than the other one or equal.
+    /// Returns the lanes in which a number is less than the other or equal.
     #[inline(always)]
     pub fn le(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_or_equal_f64s(self.values, other.values) }
     }
 
-    /// Returns where a lane is less than a number.
+    /// Returns the lanes with less than a number.
     #[inline(always)]
     pub fn below(self, bound: f64) -> Mask<S> {
         self.lt(self.like(bound))
     }
 
-    /// Returns where a lane is at least as large as a number.
+    /// Returns the lanes with at least a number.
     #[inline(always)]
     pub fn at_least(self, bound: f64) -> Mask<S> {
         self.like(bound).le(self)
     }
 
-    /// Returns where a lane is zero.
+    /// Returns the lanes with zero.
     #[inline(always)]
     pub fn is_zero(self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, self.like(0.0).values) }
@@ -308,13 +307,12 @@ pub struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// Returns a number where it says yes, 0 elsewhere.
+    /// Returns a number in lanes that are set, 0 elsewhere.
     #[inline(always)]
     pub fn or_zero(self, number: f64) -> Lanes<S> {
         let simd = self.simd;
         let mask = if Lanes::<S>::COUNT > 1 {
-            // All bits of a lane or none: that is what a mask of several is. As the choice below it would be tested
-            // once more.
+            // All bits of a lane or none, as in a mask of several lanes. The choice below would test it once more.
             pulp::bytemuck::pod_read_unaligned(pulp::bytemuck::bytes_of(&self.lanes))
         } else {
             simd.select_u64s(self.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0))
@@ -323,20 +321,20 @@ impl<S: Simd> Mask<S> {
         Lanes { simd, values: simd.transmute_f64s_u64s(bits) }
     }
 
-    /// Returns whether any lane says yes.
+    /// Returns whether any lane is set.
     #[inline(always)]
     pub fn any(self) -> bool {
         self.simd.first_true_m64s(self.lanes) < S::F64_LANES
     }
 
-    /// Returns whether all lanes say yes.
+    /// Returns whether all lanes are set.
     #[inline(always)]
     pub fn all(self) -> bool {
         !(!self).any()
     }
 }
 
-/// Where both say yes.
+/// Sets lanes that both have set.
 impl<S: Simd> BitAnd for Mask<S> {
     type Output = Self;
     #[inline(always)]
@@ -345,7 +343,7 @@ impl<S: Simd> BitAnd for Mask<S> {
     }
 }
 
-/// Where one says yes.
+/// Sets lanes that at least one has set.
 impl<S: Simd> BitOr for Mask<S> {
     type Output = Self;
     #[inline(always)]
@@ -354,7 +352,7 @@ impl<S: Simd> BitOr for Mask<S> {
     }
 }
 
-/// Where it says no.
+/// Sets lanes that are not set.
 impl<S: Simd> Not for Mask<S> {
     type Output = Self;
     #[inline(always)]
@@ -363,7 +361,7 @@ impl<S: Simd> Not for Mask<S> {
     }
 }
 
-/// Writes numbers as little-endian bytes, in one copy where the machine has them so.
+/// Writes numbers as little-endian bytes, in one copy if the machine stores them so.
 ///
 /// # Panics
 /// When there is no room for all of them.

@@ -3,7 +3,7 @@
 //! integrators, elementary functions, and numbers as C++ prints them.
 //!
 //! Knows nothing of the rest of the crate, never prints, never touches files or processes, and never allocates in the
-//! functions that run per pair (but for the integers of [`decision::exact`], the last resort). The mathematics is that
+//! functions that run per pair (except the integers of [`decision::exact`], the last resort). The mathematics is that
 //! of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975),
 //! evaluated in the order in which the original does.
 //!

@@ -22,9 +22,9 @@ pub struct Workspace {
 
 /// Solves `A d = rhs` in place: `matrix` is n x n **column-major** and destroyed, `rhs` becomes the solution.
 ///
-/// n is even. A rank-deficient matrix gives zeros for the unknowns beyond its rank: elimination stops when the
-/// largest remaining modulus is below 2^-52 times the first pivot. NaN entries spread as the arithmetic has it;
-/// nothing hangs and nothing panics over values.
+/// n is even. A rank-deficient matrix gives zeros for the unknowns beyond its rank: elimination stops when the largest
+/// remaining modulus is below 2^-52 times the first pivot. NaN entries spread by the arithmetic; no value makes it hang
+/// or panic.
 ///
 /// # Panics
 /// Unless `matrix` has the square of `rhs`'s length.
@@ -116,7 +116,7 @@ impl Decomposition<'_> {
         best
     }
 
-    /// Brings the pivot to row k and column k.
+    /// Moves the pivot to row k and column k.
     #[inline(always)]
     fn exchange(&mut self, k: usize, pivot: &Pivot) {
         let n = self.n;
@@ -366,7 +366,7 @@ mod tests {
         }
     }
 
-    /// NaN and infinity below the pivots: what is compared and what is computed is as in the plain order.
+    /// NaN and infinity below the pivots: comparisons and results are as in the plain order.
     #[test]
     fn values_that_are_no_numbers_are_passed_over_where_pivots_are_chosen() {
         let mut numbers = Numbers(5);

@@ -10,7 +10,7 @@ pub const MAX_COEFFICIENTS: usize = 6;
 #[serde(into = "Vec<Number>", try_from = "Vec<Number>")]
 pub struct Polynomial {
     length: u8,
-    /// The coefficients stand at the end, behind zeros.
+    /// The coefficients are at the end, behind zeros.
     storage: [f64; MAX_COEFFICIENTS],
 }
 

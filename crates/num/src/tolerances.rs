@@ -30,7 +30,8 @@ pub const CONTEST_DISTANCE: f64 = 1e-10;
 pub const NEWTON_UPDATE: f64 = 1e-9;
 
 /// Newton's method of implicit-euler is given up after this many iterations. The original has no limit and hangs
-/// (simulation.md 4); convergence takes fewer than ten. Lowering it far could refuse a scene that the original records.
+/// (simulation.md 4); convergence takes fewer than ten. A much lower limit could reject a scene that the original
+/// records.
 pub const NEWTON_ITERATIONS: u32 = 10_000;
 
 /// Certificate: a line's zero is near when its modulus is at most this (fraction of the step). Larger values let
@@ -72,7 +73,8 @@ pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Certificate: searches among coefficients between this and [`SEARCH_LARGEST_COEFFICIENT`] (or zero) are known to end;
-/// among subnormal numbers some do not (root-finder.md 9.5). Parabolas without a real zero lead with one of this size.
+/// among subnormal numbers some do not (root-finder.md 9.5). Parabolas without a real zero have a leading coefficient
+/// of this size.
 pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
 
 /// Certificate: see [`SEARCH_SMALLEST_COEFFICIENT`].
@@ -84,7 +86,7 @@ pub const SEARCH_LARGEST_COEFFICIENT: f64 = 1e150;
 pub const LANES_LARGEST_INPUT: f64 = 1e48;
 
 /// Fair: a correct program may be off by this many units of the running error bound (numerics.md 2; LAPACK's test
-/// ratios use 30). Smaller values refuse correct programs that evaluate in another way, larger ones hide small
+/// ratios use 30). Smaller values reject correct programs that evaluate in another way, larger ones hide small
 /// mistakes.
 pub const FAIR_UNITS: f64 = 64.0;
 
@@ -92,16 +94,16 @@ pub const FAIR_UNITS: f64 = 64.0;
 /// find coefficients by interpolation need it; it is far below what changes a decision on [0, 1].
 pub const FAIR_NORM_UNITS: f64 = 16.0;
 
-/// Fair: coefficients that are off by this part of [`FAIR_NORM_UNITS`] of their sum of moduli are right at once. Larger
-/// values say less of how much of the tolerances a program uses, smaller ones have more looked at closely.
+/// Fair: coefficients that are off by this part of [`FAIR_NORM_UNITS`] of their sum of moduli are clearly right. Larger
+/// values report less of a program's use of the tolerances, smaller ones compute more bounds.
 pub const FAIR_CLEAR: f64 = 0.25;
 
 /// Fair: the tolerance of a root finder at the time of impact, in units of the polynomials' error bounds there.
 /// Covers deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
-/// Fair: a time of impact may be off by this fraction of the step, whatever the polynomials: what a careful root finder
-/// that is not the course's may leave.
+/// Fair: a time of impact may be off by this fraction of the step, whatever the polynomials: a careful root finder
+/// other than the course's may leave this error.
 pub const FAIR_TIME: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Fair: two times of impact between which nothing moves by more than this many roundings of its position are one
@@ -113,8 +115,8 @@ pub const FAIR_MOMENT: f64 = 8.0;
 pub const FAIR_LOSS: f64 = 4.0;
 
 /// Fair: factors whose binary exponents lie farther from the mean of their kind than this many times its standard
-/// deviation are outliers, which vouch for no missing polynomial. A factor that fewer than one polynomial in ten shows
-/// is one, too. Larger values let few polynomials vouch for many, smaller ones accuse programs with several factors.
+/// deviation are outliers, which prove no missing polynomial. A factor that fewer than one polynomial in ten shows is
+/// one, too. Larger values let few polynomials prove many, smaller ones accuse programs with several factors.
 pub const FAIR_OUTLIER: f64 = 3.0;
 
 /// Fair: states may be this many times as large, or as close together, as any in the reference's own run; beyond that
@@ -152,5 +154,5 @@ pub const KNOWN_TIME: f64 = 1e-7;
 
 /// Explanations: a coordinate or velocity of a trace's first record may differ from the scene's by this share of the
 /// largest one of its kind or 1. It covers the rounding to single precision; smaller values take a trace with rounded
-/// numbers for that of another scene.
+/// numbers for another scene's.
 pub const FIRST_RECORD: f64 = 1e-6;

@@ -1,9 +1,9 @@
 //! Two-dimensional vectors with the original's order of operations.
 //!
-//! They are nalgebra's, whose sums, products and inner product are rounded as the specification says (`simulation.md`,
-//! conventions). **Nobody divides or normalizes them with nalgebra's operations**: the original multiplies by the
-//! reciprocal where a library divides each component. Use [`over`] and [`unit`](fn@unit); the lints of the numeric
-//! crates hold this.
+//! They are nalgebra's, whose sums, products and inner product are rounded as the specification requires
+//! (`simulation.md`, conventions). **No code divides or normalizes them with nalgebra's operations**: the original
+//! multiplies by the reciprocal where a library divides each component. Use [`over`] and [`unit`](fn@unit); the lints
+//! of the numeric crates enforce this.
 use nalgebra::{MatrixView2xX, Vector2};
 
 /// A point or a direction in the plane, in the scene's length unit; x to the right, y up.
@@ -107,7 +107,7 @@ mod tests {
             prop_assert_eq!(a.dot(&b).to_bits(), (a.x * b.x + a.y * b.y).to_bits());
         }
 
-        /// An independent method finds what the original's order of operations finds.
+        /// An independent method must give the results of the original's order of operations.
         #[test]
         fn the_solver_agrees_with_singular_values(list in prop::collection::vec(-1.0..1.0, 42)) {
             let (n, mut rhs) = (6, list[36..].to_vec());

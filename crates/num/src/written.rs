@@ -1,7 +1,7 @@
-//! Numbers in serialized values: they read back bit for bit, but for the bits of a NaN.
+//! Numbers in serialized values: they read back bit for bit, except the bits of a NaN.
 //!
-//! Formats such as JSON have no number for what is not finite, which is written as C++ prints it ([`general`]). Fields
-//! of numbers say `#[serde(with = "fosssim_num::written")]`.
+//! Formats such as JSON have no numbers that are not finite; these are written as C++ prints them ([`general`]). Fields
+//! of numbers have `#[serde(with = "fosssim_num::written")]`.
 use super::{printed::general, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
 use std::borrow::Cow;

@@ -2,7 +2,7 @@
 //!
 //! Words are bytes: file names that are not UTF-8 pass through. The rules are those of the argument library that the
 //! original uses: value and flag are separate words, the first word that makes no sense ends the program, `--help` and
-//! `--version` take effect where they stand.
+//! `--version` take effect in their order.
 use crate::{
     flags::{FLAGS, Flag},
     usage,
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     pub(crate) movie: Option<OsString>,
 }
 
-/// How the program ends instead of running.
+/// The end of the program without a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Ending {
     pub(crate) stdout: Vec<u8>,

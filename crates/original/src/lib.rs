@@ -5,14 +5,13 @@
 //! them or read them while they grow.
 //!
 //! The original's words about an assignment's things (its version, its name for a collision type or the second object
-//! of a pair) stands in `assignments`; the rest is one program's, whichever assignment a scene belongs to, and stands
-//! here.
+//! of a pair) are in `assignments`; the rest is the same for all assignments, and is here.
 //!
-//! A grader starts this once for every trace, and most scenes are small: then the time goes into the pages of the
-//! program that a run touches. So this is a crate of its own, compiled at the full level, and uses nothing that few
-//! runs need: its caller supplies the drawing of pictures and the words of messages ([`Services`]).
+//! A grader starts this once for every trace, and most scenes are small: then the time is that of loading the program's
+//! pages. This is therefore a crate of its own, compiled at the full level, and uses nothing that few runs need: its
+//! caller supplies the drawing of pictures and the words of messages ([`Services`]).
 //!
-//! A program becomes the drop-in, where its name or its first word says so:
+//! A program becomes the drop-in by its name or its first word:
 //!
 //! ```no_run
 //! use fosssim_original::{Pictures, Services};

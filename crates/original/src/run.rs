@@ -23,7 +23,7 @@ use std::{
     path::Path,
 };
 
-/// The exit code of everything that goes wrong.
+/// The exit code of every failure.
 const FAILED: u8 = 1;
 
 /// Runs with parsed arguments; `words` are the raw ones. Returns the exit code.
@@ -203,7 +203,7 @@ fn simulate<W: Write>(
     }
 }
 
-/// Draws the states of a trace, as far as it can be read; the grading says what is wrong with it.
+/// Draws the readable states of a trace; the grading reports what is wrong with it.
 fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(), String> {
     if !fs::metadata(name).is_ok_and(|data| data.is_file()) {
         return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());

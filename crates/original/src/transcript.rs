@@ -49,12 +49,12 @@ pub(crate) struct Transcript<'a, W: Write> {
     heading: Heading<'a>,
     steps: u32,
     threshold: f64,
-    /// The time that steps take, where the original tells it.
+    /// The time that steps take, if the original prints it.
     clock: Option<Clock>,
     error: Option<io::Error>,
 }
 
-/// When the run and the last step of it began.
+/// The times at which the run and its last step began.
 #[derive(Debug, Clone, Copy)]
 struct Clock {
     start: Instant,
@@ -75,7 +75,7 @@ const BANNER: [&str; 7] = [
 ];
 
 impl<'a, W: Write> Transcript<'a, W> {
-    /// Creates a transcript that has said nothing yet.
+    /// Creates an empty transcript.
     pub(crate) fn new(stream: W, heading: Heading<'a>) -> Self {
         Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, clock: None, error: None }
     }
@@ -215,7 +215,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
     fn step_begins(&mut self, step: u32) {
         self.print_dot(step.saturating_sub(1));
         if self.clock.is_some() {
-            // The original says these before it reads the step's record. The parts of a step are not measured here.
+            // The original prints these before it reads the step's record. The parts of a step are not measured here.
             self.write(b"Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\n");
         }
     }

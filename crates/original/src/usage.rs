@@ -33,7 +33,7 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     text
 }
 
-/// Returns the output of a parse error; `argument` is a space when the error belongs to no argument.
+/// Returns the output of a parse error; `argument` is a space if the error belongs to no argument.
 pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
     text.extend(brief(program));

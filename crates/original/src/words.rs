@@ -21,5 +21,5 @@ pub(crate) const NO_VORTEX_HESSIAN: &str =
 /// The line on standard error when the folder for pictures is missing (oracle-behavior.md 1).
 pub const NO_PICTURE_FOLDER: &str = "Failure writing SVG file!\n";
 
-/// The line on standard error when a trace is to be graded and recorded at once (oracle-behavior.md 1).
+/// The line on standard error when a trace must be graded and recorded in one run (oracle-behavior.md 1).
 pub(crate) const INPUT_AND_OUTPUT: &str = "error: arguments i and o -- arguments i and o specified simultaneously\n";

@@ -1,4 +1,4 @@
-//! Colors of scenes, and those that stand out against them.
+//! Colors of scenes, and contrasting ones.
 use fosssim_model::scene;
 
 /// A color, eight bits per component.
@@ -25,7 +25,7 @@ impl Rgb {
         Self(std::array::from_fn(|k| part(self.0[k], other.0[k])))
     }
 
-    /// Returns how bright it looks, 0 to 255 (Rec. 709 weights).
+    /// Returns the apparent brightness, 0 to 255 (Rec. 709 weights).
     #[must_use]
     pub fn brightness(self) -> u32 {
         let [red, green, blue] = self.0.map(u32::from);

@@ -2,8 +2,8 @@
 use crate::plot::{Embedding, PlottedPolynomial, PolynomialPlot};
 use fosssim_judge::study::Study;
 
-/// Returns the polynomials of a call on the step, where each is positive, where all are, and the time of impact. The
-/// mathematically right approach polynomial, where it is another one, has no part in the decision and is not shown.
+/// Returns the polynomials of a call on the step, the intervals in which each and all are positive, and the time of
+/// impact. If the mathematically right approach polynomial differs, it has no part in the decision and is not shown.
 #[must_use]
 pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
     let curves = study.curves.iter().map(|curve| PlottedPolynomial {

@@ -5,8 +5,9 @@
 //! same input gives the same bytes on every run: no fonts of the machine, no threads, no vector instructions chosen at
 //! run time.
 //!
-//! A motion goes `Painter` (positions to [`shape::Shape`]s) to `svg` or `raster`, and from there to a `film`. Plots are
-//! SVG made of numbers; they tell series apart by dash and marker and not by color alone, and need no script.
+//! `Painter` turns the positions of a motion into [`shape::Shape`]s, `svg` or `raster` draws these, and `film` joins
+//! the pictures. Plots are SVG made of numbers; they distinguish series by dash and marker and not by color alone, and
+//! need no script.
 //!
 //! ```
 //! use fosssim_render::{Extent, Painter, PictureOptions, Size, svg};

@@ -14,13 +14,13 @@ use std::collections::VecDeque;
 /// Discs and lines are at least so wide, in pixels, or they would vanish.
 const THINNEST: f64 = 1.5;
 
-/// How much of a half-plane's inside shows.
+/// The visible depth of a half-plane's inside.
 const INSIDE: f64 = 0.25;
 
 /// Discs of more pixels than this are drawn as the half-plane that they are where they can be seen.
 const HUGE: f64 = 100_000.0;
 
-/// The greatest number of points drawn of a particle's path; older ones grow sparse.
+/// The greatest number of points drawn of a particle's path; of older ones some are dropped.
 const LONGEST_PATH: usize = 2000;
 
 /// The parts of a picture besides the bodies.
@@ -28,7 +28,7 @@ const LONGEST_PATH: usize = 2000;
 pub struct PictureOptions {
     /// The size of the picture.
     pub size: Size,
-    /// Whether step and time stand in the lower left corner.
+    /// Whether step and time are in the lower left corner.
     pub label: bool,
 }
 
@@ -120,13 +120,13 @@ impl Painter {
         colors
     }
 
-    /// Returns the color of a second motion: it stands out against light and dark backgrounds.
+    /// Returns the color of a second motion, which contrasts with light and dark backgrounds.
     fn overlay_color(&self) -> Rgb {
         if self.background.brightness() > 127 { Rgb([178, 0, 110]) } else { Rgb([255, 140, 220]) }
     }
 
     /// Returns the picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures
-    /// have to be asked for in the order of the steps, because particles leave paths.
+    /// must be requested in the order of the steps, because particles leave paths.
     ///
     /// # Panics
     /// When there are fewer positions than the scene has particles.
@@ -193,7 +193,7 @@ impl Painter {
         if matches!(paint, Paint::Dashed(_)) {
             return;
         }
-        // Its edge looks straight here, and lies across the way from its center.
+        // Its edge looks straight here, and is perpendicular to the way from its center.
         let points = match distance > 0.0 {
             true => {
                 let unit = [away[0] / distance, away[1] / distance];
@@ -227,7 +227,7 @@ impl Painter {
         if points.len() > 2 {
             shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE) });
         }
-        // The boundary, as far as it can be seen: through its point nearest to the middle of the picture.
+        // The visible part of the boundary: through its point nearest to the middle of the picture.
         let size = self.size();
         let middle = [0.5 * f64::from(size.width()), 0.5 * f64::from(size.height())];
         let off = above(middle);
@@ -263,7 +263,7 @@ impl Trail {
         self.points.push_back((time, place));
     }
 
-    /// Draws the path in pieces that lie in the picture.
+    /// Draws the path in pieces that are in the picture.
     fn draw(&self, view: &View, frame: &ClipRectangle, shapes: &mut Vec<Shape>) {
         let mut piece: Vec<Point> = Vec::new();
         let mut finish = |piece: &mut Vec<Point>| {
@@ -365,7 +365,7 @@ mod tests {
         let huge = SCENE.replace(r#"radius="0.5""#, r#"radius="1e9""#);
         let shapes = self::painter(&huge).picture(0, &[-1e9, 0.0, 1.0, 0.0], None);
         let Some(Shape::Area { points, .. }) = shapes.get(shapes.len() - 3) else { panic!("{shapes:?}") };
-        // Its edge stands in the middle of the picture.
+        // Its edge is in the middle of the picture.
         assert!(points.iter().all(|point| point[0] < 200.1), "{points:?}");
     }
 }

@@ -24,7 +24,7 @@ impl Raster {
     /// Creates an empty picture, to be drawn on again and again.
     ///
     /// # Panics
-    /// Never: every [`Size`] is one that a pixmap can have.
+    /// Never: a pixmap can have every [`Size`].
     #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = Pixmap::new(size.width(), size.height()).expect("sizes are checked");
@@ -113,7 +113,7 @@ impl Raster {
     }
 }
 
-/// Returns a coordinate as the drawing library takes it; shapes lie near the picture.
+/// Returns a coordinate as the drawing library takes it; shapes are near the picture.
 #[expect(clippy::cast_possible_truncation, reason = "pixels need no more digits")]
 fn narrow(value: f64) -> f32 {
     value as f32

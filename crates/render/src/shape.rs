@@ -1,11 +1,11 @@
-//! The shapes that pictures are made of, in pixels from the upper left corner. Everything lies in or near the picture:
-//! far coordinates have been clipped, so that no drawing library sees numbers it can't handle.
+//! The shapes that pictures are made of, in pixels from the upper left corner. All shapes are in or near the picture:
+//! far coordinates have been clipped, so that drawing libraries can handle them.
 use crate::color::Rgb;
 
 /// A point in pixels.
 pub type Point = [f64; 2];
 
-/// How a shape is drawn.
+/// The paint of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
     /// Filled, or a plain stroke.
@@ -29,13 +29,13 @@ impl Paint {
 /// One thing in a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// A disc; dashed ones are outlines.
+    /// A disc; a dashed disc is an outline.
     Disc {
         /// The shape's center.
         center: Point,
         /// The shape's radius, positive.
         radius: f64,
-        /// How it is drawn.
+        /// The paint of the shape.
         paint: Paint,
     },
     /// A line with round ends.
@@ -44,14 +44,14 @@ pub enum Shape {
         points: Vec<Point>,
         /// The shape's width, positive.
         width: f64,
-        /// How it is drawn.
+        /// The paint of the shape.
         paint: Paint,
     },
     /// A filled polygon.
     Area {
         /// The shape's corners.
         points: Vec<Point>,
-        /// How it is drawn.
+        /// The paint of the shape.
         paint: Paint,
     },
     /// A line of text.

@@ -14,7 +14,7 @@ pub struct Size {
     height: u32,
 }
 
-/// A size that is refused.
+/// A size that is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BadSize {
     /// Not two numbers.

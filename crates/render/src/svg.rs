@@ -36,7 +36,7 @@ pub fn escaped(text: &str) -> String {
             '"' => safe += "&quot;",
             '\'' => safe += "&#39;",
             '\t' | '\n' => safe.push(' '),
-            // Marks that turn the reading direction could make a name look like another one.
+            // Marks that turn the reading direction could make a name look like another.
             '\u{0}'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
                 safe.push('\u{fffd}');
             }

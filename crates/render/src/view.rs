@@ -3,7 +3,7 @@ use crate::size::Size;
 use fosssim_model::scene::{Scene, Viewport};
 use fosssim_num::vector::Vec2;
 
-/// How much wider than the bodies the picture is.
+/// The ratio of the picture's width to that of the bodies.
 const MARGIN: f64 = 1.1;
 
 /// Coordinates beyond this are left out when a view is fitted: their squares and sums are infinite.
@@ -46,7 +46,7 @@ impl Extent {
         }
     }
 
-    /// Widens the box so that it holds another one, too.
+    /// Widens the box so that it holds another box, too.
     pub fn join(&mut self, other: &Self) {
         self.low = Vec2::new(self.low.x.min(other.low.x), self.low.y.min(other.low.y));
         self.high = Vec2::new(self.high.x.max(other.high.x), self.high.y.max(other.high.y));

@@ -1,4 +1,4 @@
-//! Annotations of GitHub Actions: workflow commands that show a title and words beside a job.
+//! Annotations of GitHub Actions: workflow commands that show a title and words next to a job.
 use crate::foreign::one_line;
 
 /// Returns one annotation: `error` or `warning`, its title and its words.

@@ -23,7 +23,7 @@ use serde::Serialize;
 /// The version of the report's shape.
 pub const DETECT_SCHEMA: u32 = 1;
 
-/// Where in a scene's run a pair was looked at.
+/// The place in a scene's run at which a pair was examined.
 #[derive(Debug, Clone, Copy)]
 pub struct Place<'a> {
     /// The scene as typed.
@@ -34,7 +34,7 @@ pub struct Place<'a> {
     pub step: u32,
     /// The pair.
     pub pair: Pair,
-    /// The detection pass; `None` where the scene has no continuous-time detection.
+    /// The detection pass; `None` if the scene has no continuous-time detection.
     pub pass: Option<Pass>,
     /// The number of passes that the reference makes in this step.
     pub passes: usize,
@@ -47,7 +47,7 @@ pub struct Place<'a> {
 pub struct Detect<'a> {
     /// The computation.
     pub study: &'a Study,
-    /// The place where the pair comes from; `None` when its numbers were typed.
+    /// The place from which the pair comes; `None` if its numbers were typed.
     pub place: Option<Place<'a>>,
 }
 
@@ -115,7 +115,7 @@ impl Detect<'_> {
                 CallLog::These(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
                         let expected = curve.logged.coefficients();
-                        // Their lengths may differ by what the course's library drops.
+                        // Their lengths may differ by the coefficients that the course's library drops.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
                             let mark = "right except for a factor and small leading coefficients, which is allowed";
                             format!("  {}: {}\n    {}\n", curve.role, style.paint(Look::Good, mark), polynomial(own))
@@ -176,7 +176,7 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }
 
-/// Returns a polynomial of the trace, and beside the right one, power by power, where they differ by more than a
+/// Returns a polynomial of the trace, and next to the right one, power by power, where they differ by more than a
 /// factor.
 fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
@@ -314,7 +314,7 @@ pub(crate) fn polynomial(coefficients: &[f64]) -> String {
     text
 }
 
-/// One detection call: what the reference computes from the motion of a pair within a step. Times are fractions of the
+/// One detection call: the reference's computation from the motion of a pair within a step. Times are fractions of the
 /// step.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -322,20 +322,20 @@ pub(crate) struct DetectView<'a> {
     /// The version of this shape.
     #[schemars(extend("const" = DETECT_SCHEMA))]
     schema: u32,
-    /// Where in a scene's run the pair was looked at; null when its numbers were typed.
+    /// The place in a scene's run at which the pair was examined; null if its numbers were typed.
     place: Option<PlaceView<'a>>,
     /// The kind of the pair.
     kind: PairKind,
-    /// How its bodies move.
+    /// The motion of its bodies.
     motion: MotionView,
-    /// In the order of the trace; none where the scene's collision handling is simple.
+    /// The polynomials in the order of the trace; none if the scene's collision handling is simple.
     polynomials: Vec<CurveView>,
     /// The reference's decision.
     answer: AnswerView,
-    /// Whether the pair collides whatever rounding does to a correct program; null where round-off may flip it.
+    /// Whether the pair collides whatever rounding does to a correct program; null if round-off may flip it.
     certain: Option<bool>,
-    /// The mathematically right approach polynomial of a particle and an edge, and what follows from it; null where the
-    /// course's is the same.
+    /// The mathematically right approach polynomial of a particle and an edge, and its result; null if the course's is
+    /// the same.
     right_approach: Option<RightApproachView>,
     /// Overlap and approach at the end of the step, where the scene's collision handling is simple; else null.
     overlap: Option<overlap::OverlapView>,
@@ -353,13 +353,13 @@ view! {
         step: u32 = place.step,
         /// The pair.
         pair: Pair = place.pair,
-        /// The detection pass; null where the scene has no continuous-time detection.
+        /// The detection pass; null if the scene has no continuous-time detection.
         pass: Option<Pass> = place.pass,
         /// The number of passes that the reference makes in this step.
         passes: usize = place.passes,
-        /// The lists that the trace logged for this call, in the order of `polynomials`: empty where it logged nothing
-        /// for it, with an empty list for one that is missing. Null for the reference's run, and where it logged
-        /// another number of polynomials in which this call's can't be told.
+        /// The lists that the trace logged for this call, in the order of `polynomials`: empty if it logged nothing for
+        /// it, with an empty list for one that is missing. Null for the reference's run, and if it logged another
+        /// number of polynomials, in which those of this call can't be found.
         logged: Option<Vec<Vec<Number>>> = match place.logged {
             CallLog::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
@@ -374,9 +374,9 @@ view! {
 struct MotionView {
     /// The centers of both particles; the particle's center and the edge's ends; or the particle's center.
     points: Vec<PointView>,
-    /// The radii of the bodies that have one, in their order.
+    /// The radii of the bodies that have a radius, in their order.
     radii: Vec<Number>,
-    /// The half-plane's place, where it is one.
+    /// The half-plane's place, if the pair has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_plane: Option<HalfPlaneView>,
 }
@@ -387,7 +387,7 @@ struct MotionView {
 struct PointView {
     /// The place where it is at the start of the step.
     start: [Number; 2],
-    /// How far it goes within the step.
+    /// The motion of the body within the step.
     displacement: [Number; 2],
 }
 
@@ -407,7 +407,7 @@ view! {
     struct CurveView from curve: Curve {
         /// The polynomial's meaning when it is positive.
         role: Role = curve.role,
-        /// As logged and searched, highest power first: leading ones below 1e-12 are dropped.
+        /// As logged and searched, highest power first: leading coefficients below 1e-12 are dropped.
         coefficients: Polynomial = curve.logged,
         /// Nothing dropped.
         untrimmed: Polynomial = curve.untrimmed,
@@ -423,7 +423,7 @@ view! {
     /// The decision that follows from the polynomials of a pair.
     #[schemars(deny_unknown_fields)]
     struct AnswerView from answer: Answer {
-        /// Where all polynomials are positive: intervals of time, sorted and apart.
+        /// Intervals of time in which all polynomials are positive, sorted and disjoint.
         positive: Vec<[Number; 2]> = sets(&answer.positive),
         /// Whether the pair collides within the step.
         collides: bool = answer.decision.collides(),

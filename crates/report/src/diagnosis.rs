@@ -1,4 +1,4 @@
-//! The report of `explain`: what is likely wrong with a program, trace by trace and all together.
+//! The report of `explain`: the likely mistakes of a program, trace by trace and all together.
 use super::{
     case::Case,
     explain::{ExplanationView, lines},
@@ -19,13 +19,13 @@ const SCHEMA: u32 = 3;
 /// The whole report.
 #[derive(Debug, Clone, Default)]
 pub struct Diagnosis {
-    /// The traces, in the order in which they were asked about.
+    /// The traces, in the order of the request.
     pub cases: Vec<Case>,
-    /// With several traces, the mistakes that explain them together, the one that explains most first.
+    /// With several traces, the mistakes that explain them together, the most frequent first.
     pub common: Vec<Explanation>,
     /// The common properties of the scenes in which the program crashes or runs into a limit.
     pub located: Option<LocatedFailure>,
-    /// The smallest scene for each cause, where these were looked for.
+    /// The smallest scene for each cause, if requested.
     pub smallest: Vec<SmallestScene>,
 }
 
@@ -146,13 +146,13 @@ view! {
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.accepted(),
         /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words;
-        /// null where nothing is known.
+        /// null if nothing is known.
         located: Option<String> = diagnosis.located.as_ref().map(located),
-        /// With several traces, the mistake that explains most of the wrong ones.
+        /// With several traces, the mistake that explains most of the wrong traces.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
-        /// With several traces, up to three mistakes that explain the wrong ones together; the first is `common`.
+        /// With several traces, up to three mistakes that explain the wrong traces together; the first is `common`.
         likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
-        /// The traces, in the order in which they were asked about.
+        /// The traces, in the order of the request.
         traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),
         /// The smallest scene for each cause, where a program is at hand.
         smallest: Vec<SmallestView> = diagnosis.smallest.iter().map(SmallestView::from).collect(),
@@ -171,7 +171,7 @@ view! {
         accepted: bool = case.accepted,
         /// The way the program ended, where it did not end well.
         note: Option<&'a str> = case.note.as_deref(),
-        /// The first thing that is wrong; null where nothing is, and where it may not be told.
+        /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,

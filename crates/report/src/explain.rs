@@ -1,7 +1,7 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show what they are given: how much that is, `mistakes::together::told` decides. Words of a submission come in
-//! as numbers only.
+//! They show all that they get; `mistakes::together::told` decides how much that is. Data of a submission appear as
+//! numbers only.
 use super::{
     number::{counted, exact},
     style::Style,
@@ -10,7 +10,7 @@ use super::{
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
 
-/// The greatest number of other mistakes listed that can't be told apart.
+/// The greatest number of listed mistakes that can't be distinguished.
 const LISTED: usize = 3;
 
 /// Returns the lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
@@ -45,7 +45,7 @@ pub(crate) struct ExplanationParts {
     pub(crate) what: String,
     /// The evidence for it.
     pub(crate) evidence: Option<String>,
-    /// The exact form, and what can't be told apart from it.
+    /// The exact form, and the mistakes that can't be distinguished from it.
     pub(crate) details: Vec<String>,
     /// A small instance.
     pub(crate) example: Vec<String>,
@@ -81,8 +81,8 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
     lines
 }
 
-/// Returns the explanations that can't be told apart from one. Known mistakes are named; one that is only found in
-/// polynomials has no sentence of its own, and is counted.
+/// Returns the explanations that can't be distinguished from one. Known mistakes are named; a guess that is only found
+/// in polynomials has no sentence of its own, and is counted.
 fn others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
     let (shown, more) = named.split_at(named.len().min(LISTED));
@@ -139,9 +139,9 @@ view! {
         pub details: Vec<String> = details(explanation),
         /// The number of `samples` that it reproduces.
         pub reproduced: u64 = explanation.reproduced,
-        /// Polynomials or steps that were looked at.
+        /// The number of polynomials or steps that were examined.
         pub samples: u64 = explanation.samples,
-        /// Keys of mistakes that can't be told apart from it.
+        /// Keys of mistakes that can't be distinguished from it.
         pub same_as: Vec<String> = explanation.same_as.clone(),
         /// A small instance.
         pub example: Option<ExampleView> = explanation.example.as_ref().map(ExampleView::from),
@@ -154,7 +154,7 @@ view! {
     pub struct ExampleView from example: Example {
         /// The step, from 1.
         pub step: u32 = example.step,
-        /// Where, in words.
+        /// The place, in words.
         pub place: String = place(&example.place),
         /// The inputs.
         pub given: Vec<ExampleValue> = example.given.clone(),

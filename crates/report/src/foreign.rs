@@ -1,10 +1,10 @@
-//! Somebody else's words: names, and the output of programs. Control characters become visible, and what nobody sees is
+//! Words of others: names, and the output of programs. Control characters become visible, and invisible characters are
 //! replaced, before any format escapes what its own syntax gives a meaning.
 use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;
 
 /// Removes a terminal's codes for colors, cursors and titles, which a log of FOSSSim's own holds in every line. Only
-/// whole codes are removed, so that what is left of a broken one becomes visible.
+/// whole codes are removed, so that the rest of a broken code becomes visible.
 #[must_use]
 pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     const ESCAPE: char = '\u{1b}';
@@ -48,7 +48,8 @@ fn length_of_code(code: &str) -> Option<usize> {
     }
 }
 
-/// Returns the output of a program, [`plain`] and without a terminal's codes. Names keep them, or two could look alike.
+/// Returns the output of a program, [`plain`] and without a terminal's codes. Names keep them; otherwise two could look
+/// the same.
 #[must_use]
 pub fn printed(text: &str) -> String {
     plain(&without_codes(text))
@@ -61,8 +62,8 @@ pub(crate) const fn is_unseen(c: char) -> bool {
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Returns foreign words without control characters: escape codes, bells and NULs become visible, line breaks and
-/// tabs stay, characters that XML 1.0 forbids and those that nobody sees are replaced.
+/// Returns foreign words without control characters: escape codes, bells and NULs become visible, line breaks and tabs
+/// stay, characters that XML 1.0 forbids and invisible ones are replaced.
 #[must_use]
 pub fn plain(text: &str) -> String {
     // Nearly every text, which a class has by the ten thousand.

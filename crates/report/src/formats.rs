@@ -1,4 +1,4 @@
-//! The formats of grades: their names, what they hold, and what each tells its reader.
+//! The formats of grades: their names, their contents, and the readers for whom they are.
 use crate::{
     grade::{Text, csv_table, github, gradescope, json, junit, not_graded, prairielearn},
     page::{Audience, GradePage},
@@ -72,7 +72,7 @@ formats! {
         };
     /// One row per scene, for spreadsheets.
     Csv "csv" true csv_table::scenes;
-    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these lie on a
+    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these are on a
     /// disk.
     Html "html" false
         |grades, _| {
@@ -117,11 +117,11 @@ impl Format {
     }
 
     /// Returns the part of a grade that goes into a document for this reader. Reports for students leave out the groups
-    /// that students do not see at once, unless the platform that asks for them hides these itself (`platform_hides`).
+    /// that students do not see immediately, unless the requesting platform hides these itself (`platform_hides`).
     #[must_use]
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
-            // Students read these in any case. They hide what is hidden on their own; so does a page.
+            // Students read these formats in any case. They hide hidden groups by themselves, and so does a page.
             (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => told_to_students(grade),
             (_, Audience::Staff) => Cow::Borrowed(grade),
             (_, Audience::Student) if platform_hides => told_to_students(grade),

@@ -59,7 +59,7 @@ fn power(rest: &str) -> Option<(String, usize)> {
 }
 
 /// Returns whether the text before a sign ends with a short name or a parenthesis, and the text behind begins with one.
-/// The name of a function, a file or an English word is none.
+/// Names of functions and files, and English words, do not count.
 fn is_between_factors(before: &str, behind: &str) -> bool {
     let is_name = |word: &str| word.len() <= 3 && word.starts_with(|c: char| c.is_ascii_alphabetic());
     let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();

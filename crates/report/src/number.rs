@@ -28,9 +28,8 @@ pub fn counted(value: u64, noun: &str) -> String {
     format!("{} {noun}{plural}", count(value))
 }
 
-/// Returns two values to be compared, in one notation and no longer than it takes to see where they part: six digits,
-/// and at least two from the first that differs. With the place in both texts from which they are not the same; nothing
-/// where they are.
+/// Returns two values in one notation, as short as a comparison allows: six digits, and at least two from the first
+/// that differs. Returns also the place in both texts at which they begin to differ; `None` if they are equal.
 #[must_use]
 pub fn beside(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = in_one_notation(expected, actual).unwrap_or_else(|| (general(expected), general(actual)));

@@ -8,9 +8,9 @@ const WIDEST: usize = 100;
 /// megabytes long.
 const REACH: usize = 4 * WIDEST + 8;
 
-/// Returns everything that is wrong with a refused scene: a head line, then each problem with its source line.
+/// Returns everything that is wrong with a rejected scene: a head line, then each problem with its source line.
 ///
-/// `name` is how messages call the scene, `source` its bytes.
+/// `name` is the scene's name in messages, `source` its bytes.
 #[must_use]
 pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
     let count = refused.list.iter().filter(|problem| problem.severity == Severity::Error).count();

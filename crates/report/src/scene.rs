@@ -20,8 +20,8 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     scenes.iter().map(line).collect()
 }
 
-/// Returns `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: what a scene has none of is left out, and the milestones
-/// are those whose programs can run it.
+/// Returns `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: kinds without a member are left out, and the milestones are
+/// those whose programs can run it.
 fn size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),

@@ -41,7 +41,7 @@ fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
     note.iter().cloned().chain(first).chain(told).collect()
 }
 
-/// Returns commands that run the program on the scene and look closer.
+/// Returns commands that run the program on the scene and show more.
 fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
     let (scene, program) = (file.unwrap_or("small.xml"), &small.program);
     let mut all = vec![
@@ -66,20 +66,20 @@ view! {
         origin: String = plain(&small.origin),
         /// The scene, as a file.
         scene: String = small.xml.clone(),
-        /// How often the program was run.
+        /// The number of runs of the program.
         runs: u32 = small.runs,
-        /// Whether no single attempt makes it smaller; false where the search was stopped.
+        /// Whether no single attempt makes it smaller; false if the search was stopped.
         minimal: bool = small.is_minimal,
         /// The way the program ended, where it did not end well.
         note: Option<String> = small.note.as_deref().map(plain),
-        /// The first thing that is wrong; null where nothing is, and where it may not be told.
+        /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
         /// Likely mistakes, the cause first.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
-        /// The computation of the pair that tells most, as `detect` prints it; null where it may not be told.
+        /// The computation of the most informative pair, as `detect` prints it; null if hints hide it.
         by_hand: Option<String> = small.by_hand.as_ref().map(|by_hand| by_hand.text.clone()),
     }
 }

@@ -13,7 +13,7 @@ pub enum Style {
     ColorAndSigns,
 }
 
-/// The look of a piece of text.
+/// The style of a piece of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
     /// A verdict or value that is right.

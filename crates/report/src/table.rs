@@ -4,7 +4,7 @@ use super::{
     wrap::columns,
 };
 
-/// A cell: its text, and perhaps how it looks.
+/// A cell: its text, and perhaps its style.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
     text: String,
@@ -12,7 +12,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Returns a cell that looks like this.
+    /// Returns a cell with this style.
     pub fn looking(look: Look, text: impl Into<String>) -> Self {
         Self { text: text.into(), look: Some(look) }
     }
@@ -24,7 +24,7 @@ impl<T: Into<String>> From<T> for Cell {
     }
 }
 
-/// The place where the text of a column stands.
+/// The alignment of a column's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
     /// At its left edge.

@@ -33,11 +33,11 @@ macro_rules! view {
 }
 pub(crate) use view;
 
-/// The version of all shapes in this module, but for those below.
+/// The version of all shapes in this module, except for those below.
 pub const SCHEMA: u32 = 1;
 
-/// The version of the check report: 2 since the fair rules speak in it, whose findings have kinds of their own and may
-/// lie in the first record.
+/// The version of the check report. Version 2 added the fair rules, whose findings have kinds of their own and may be
+/// in the first record.
 pub const CHECK_SCHEMA: u32 = 2;
 
 /// Returns the name of a value in JSON, for other formats; nothing for a value that has fields.
@@ -103,11 +103,11 @@ pub struct FindingView {
     pub frame: u64,
     /// The event's kind.
     pub kind: FindingKind,
-    /// The pair; null for what belongs to no pair.
+    /// The pair; null if it belongs to no pair.
     pub pair: Option<ImpulsePair>,
     /// The particle, for positions and velocities.
     pub particle: Option<usize>,
-    /// The polynomial; null for what is not about one.
+    /// The polynomial; null if it is about none.
     pub polynomial: Option<PolynomialView>,
     /// The highest power of t whose coefficient differs once the factor on which most coefficients agree is taken out.
     pub coefficient: Option<usize>,
@@ -116,10 +116,10 @@ pub struct FindingView {
     pub expected: Option<Value>,
     /// The trace's value.
     pub actual: Option<Value>,
-    /// The distance between both, where there is one.
+    /// The distance between both, if there is one.
     pub residual: Option<Number>,
-    /// The bound of the distance; for coefficients, of the distance after rescaling. Null where it depends on the
-    /// values (fair rules).
+    /// The bound of the distance; for coefficients, of the distance after rescaling. Null if it depends on the values
+    /// (fair rules).
     pub tolerance: Option<Number>,
     /// A coefficient as the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -141,7 +141,7 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 }
 
 impl FindingView {
-    /// Returns a finding by the rules of a book. The tolerances of the fair ones depend on the values.
+    /// Returns a finding by the rules of a book. The tolerances of the fair rules depend on the values.
     #[must_use]
     pub fn by(book: Book, finding: &Finding) -> Self {
         let (kind, detail) = (finding.kind(), &finding.detail);

@@ -19,14 +19,14 @@ use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
 use fosssim_mistakes::together::likely_mistakes;
 use fosssim_model::assignments::{Assignment, Definition};
 
-/// The words for a trace without the lists that its scene asks for.
+/// The words for a trace without the lists that its scene requires.
 pub const STATES_ONLY: &str =
     "the trace holds only positions and velocities, like that of a program without collisions";
 
-/// The exit code of shells and loaders that did not find what they were to run.
+/// The exit code of shells and loaders that did not find their program.
 const NOT_FOUND: i32 = 127;
 
-/// Returns one sentence that says what happened on a scene.
+/// Returns one sentence about the result of a scene.
 #[must_use]
 pub fn summary(result: &SceneResult) -> String {
     match &result.reason {
@@ -44,7 +44,7 @@ pub fn summary(result: &SceneResult) -> String {
     }
 }
 
-/// Returns how the program ended, and at which limit, without how far it came: the same in many scenes.
+/// Returns how the program ended, and at which limit, but not how far it came: these words are equal in many scenes.
 pub(crate) fn ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summary(result) };
     let ended = result.ended.as_ref().map(RunEnd::to_string).unwrap_or_default();
@@ -107,8 +107,8 @@ fn milestone(other: Assignment) -> String {
     format!("it looks like a program of {title}: grade it with --suite {key}")
 }
 
-/// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, as far as that
-/// may be told.
+/// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, if hints allow
+/// it.
 fn unwritten(grade: &Grade) -> String {
     let scenes = counted(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
@@ -118,7 +118,7 @@ fn unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// Says in one sentence why not everything is accepted; nothing where it is.
+/// Returns one sentence why not everything is accepted; nothing if everything is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = unfit(grade) {
@@ -131,7 +131,7 @@ pub fn reason(grade: &Grade) -> Option<String> {
     Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summary(first)))
 }
 
-/// Returns how a build ended.
+/// Returns the end of a build, in words.
 #[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
@@ -183,8 +183,8 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// Returns how far a program's trace came. What a crash takes along of it nobody knows: records may have been waiting
-/// to be written.
+/// Returns the progress of a program's trace. The number of records that a crash has lost is unknown: some may have
+/// been waiting to be written.
 fn how_far(reached: ProgramProgress, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
@@ -241,7 +241,7 @@ fn describe_failure(failure: &Failure) -> String {
     }
 }
 
-/// Returns where a trace parts from the reference, as far as it may be told.
+/// Returns where a trace diverges from the reference, if hints allow it.
 pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
@@ -258,10 +258,10 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     }
 }
 
-/// Returns `counts: wrong coefficient (12), missed collision (3)`, when there is more than the first finding tells.
+/// Returns `counts: wrong coefficient (12), missed collision (3)`, if there is more than the first finding.
 fn counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
-    // A kind that is found in damaged records alone has no example, and says nothing about the program.
+    // A kind that is found in damaged records only has no example, and proves nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
     let list: Vec<String> = FindingKind::ALL
         .into_iter()

@@ -1,6 +1,6 @@
 //! Lines broken at blanks where a terminal would break them anywhere.
 //!
-//! Works on finished text, so that no renderer has to know a width: what continues is indented under what it continues.
+//! Works on finished text, so that no renderer has to know a width: a continued line is indented under its beginning.
 //! Color codes take no room. A word that is too long stays whole, and so does a line that is meant to be copied: those
 //! begin with `$ `. Lines of a program's output keep their mark (`| `) on every line, so that none can be taken for
 //! ours.
@@ -9,7 +9,7 @@ use unicode_width::UnicodeWidthChar;
 /// The last column of a line keeps its indentation when at least this number of columns is left to it.
 const ROOM: usize = 30;
 
-/// Returns the text with no line wider than `width`, as far as words allow.
+/// Returns the text with no line wider than `width`, if words allow it.
 #[must_use]
 pub fn wrapped(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
@@ -75,7 +75,7 @@ fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     if body.starts_with("- ") {
         return (lead + 2, "");
     }
-    // A row of a table goes on under its last column, when there is room.
+    // A row of a table continues under its last column, if there is room.
     let gaps = line.match_indices("  ").map(|(at, _)| at).filter(|at| *at > lead);
     let columns_at = gaps.filter_map(|at| {
         let rest = line[at..].trim_start_matches(' ');

@@ -1,4 +1,4 @@
-//! How programs are run on this host, and the grader's side of a start.
+//! The ways to run programs on this host, and the grader's side of a start.
 
 use std::{
     ffi::OsString,
@@ -48,16 +48,16 @@ impl Supervisor {
         Self { program: program.into() }
     }
 
-    /// Returns the grader's files that nobody may run: this process's and the supervisor's.
+    /// Returns the grader's files that no submission may run: this process's and the supervisor's.
     fn own_files(&self) -> [PathBuf; 2] {
         ["/proc/self/exe".into(), self.program.clone()]
     }
 
-    /// Returns the program's command, asked for this, without our environment.
+    /// Returns the supervisor's command for this request, without our environment.
     fn command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
-        // Copies of programs lie there, which the probe tries.
+        // Copies of programs are in this folder; the probe tries to execute there.
         command.env("TMPDIR", std::env::temp_dir());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
@@ -71,12 +71,13 @@ impl Supervisor {
             Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
         let asked = begin().map_err(|source| self.not_started(source))?;
-        // One that does not listen says why, or ends.
+        // A supervisor that does not read reports why, or ends.
         let _ = wire::send(&asked.control, order);
         Ok(asked)
     }
 
-    /// Asks a keeper of runs of this kind, and starts one if there is none; with the word whether it was there before.
+    /// Sends a request to a keeper of runs of this kind, and starts a keeper if there is none; returns also whether it
+    /// existed before.
     fn ask_keeper(
         &self,
         order: &RunOrder,
@@ -107,7 +108,7 @@ impl Supervisor {
         SandboxError::Supervisor { program: self.program.display().to_string(), source }
     }
 
-    /// Has every wall tried once.
+    /// Tries every wall once.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
         let child = self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?;
         let output = child.wait_with_output();
@@ -218,8 +219,8 @@ impl Backend {
         self.with(layers::with_landlock(&self.layers, version), version)
     }
 
-    /// Returns every wall that holds on this host, however few: nothing is refused for a missing one. For
-    /// `--unsafe-no-sandbox`. The layers say what is missing, see [`Backend::weaknesses`].
+    /// Returns every wall that holds on this host, however few: a missing wall is no error. For `--unsafe-no-sandbox`.
+    /// The layers name what is missing, see [`Backend::weaknesses`].
     ///
     /// # Errors
     ///
@@ -291,7 +292,7 @@ impl Backend {
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match asked.first() {
-                // It had gone for want of orders before this one came.
+                // It had ended for want of orders before this one arrived.
                 Err(_) if kept => asked.host.kill(),
                 first => break (asked, first),
             }

@@ -27,7 +27,7 @@ pub fn remove_folder(path: &Path) -> io::Result<()> {
     if std::fs::remove_dir_all(path).or_else(gone).is_ok() {
         return Ok(());
     }
-    // In a folder that others may write to, a link could lie there by now.
+    // In a folder that others may write to, a link could be there by now.
     open_up(File::options().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NOFOLLOW).open(path)?.as_fd());
     std::fs::remove_dir_all(path).or_else(gone)
 }

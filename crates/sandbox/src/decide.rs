@@ -1,8 +1,8 @@
 //! From the supervisor's facts to how a run ended.
 //!
-//! The kernel's word comes first: what the supervisor killed for, the wait status, the counters. What the program
-//! printed is consulted only to explain a failure: why it did not come to run, and whether it gave up for want of
-//! memory. Nobody gains by forging that; it is one failure instead of another.
+//! The kernel's facts decide first: the reason of the supervisor's kill, the wait status, the counters. The program's
+//! output only explains a failure: why it did not start, and whether it gave up for want of memory. Forging it gains
+//! nothing: it is one failure instead of another.
 
 use super::{
     outcome::{RunEnd, StartProblem},
@@ -12,7 +12,7 @@ use super::{
 /// The exit code of the dynamic loader when it finds no library.
 const LOADER_FAILED: i32 = 127;
 
-/// Returns how the run of `order` ended, given the facts and what the program wrote to standard error.
+/// Returns how the run of `order` ended, given the facts and the program's standard error.
 pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
     if report.exec_errno == Some(libc::ENOMEM) {
         return RunEnd::MemoryLimit;
@@ -33,7 +33,7 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd 
         Some(libc::SIGSYS) => return RunEnd::Violation { call: "a call of another architecture (32 bits)".into() },
         _ => {}
     }
-    // A short run can pass a limit and end between two looks.
+    // A short run can pass a limit and end between two checks.
     if report.peak_memory > order.limits.memory {
         return RunEnd::MemoryLimit;
     }
@@ -66,7 +66,7 @@ pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd 
     RunEnd::Exited(code)
 }
 
-/// Returns the meaning of the kernel's refusal to execute a file that is there and may be executed.
+/// Returns the reason why the kernel does not execute a file that exists and may be executed.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {
         libc::ENOENT | libc::EACCES | libc::EPERM => StartProblem::MissingLoader {},
@@ -76,8 +76,8 @@ fn start_problem(errno: i32) -> StartProblem {
     }
 }
 
-/// Returns the library that the loader of glibc or musl says it did not find. The program itself could say so, of a
-/// name only.
+/// Returns the library that the loader of glibc or musl reports as missing. The program itself could print the same,
+/// with no more than a name as the effect.
 fn missing_library(stderr: &str) -> Option<String> {
     const LONGEST: usize = 100;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
@@ -88,7 +88,7 @@ fn missing_library(stderr: &str) -> Option<String> {
     (name.len() <= LONGEST && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
 }
 
-/// Returns whether a sanitizer's runtime says that it was refused its terabytes of address space.
+/// Returns whether a sanitizer's runtime reports that its terabytes of address space were denied.
 fn wants_shadow(stderr: &str) -> bool {
     const COMPLAINTS: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
@@ -98,7 +98,7 @@ fn wants_shadow(stderr: &str) -> bool {
     COMPLAINTS.iter().any(|complaint| stderr.contains(complaint))
 }
 
-/// Returns whether its last words are those of a runtime whose request for memory was refused. A single request beyond
+/// Returns whether its last words are those of a runtime whose request for memory was denied. A single request beyond
 /// the limit of address space fails without any memory in use, so that no counter shows it.
 fn wants_memory(stderr: &str) -> bool {
     // C++, Rust, Python, Java, Node and the sanitizers.

@@ -16,7 +16,7 @@ use super::{
 pub struct FakeRun {
     /// The way it ended.
     pub ended: RunEnd,
-    /// The trace that it leaves, if the job has one; nothing leaves none.
+    /// The trace that it leaves, if the job has one; empty for no trace.
     pub trace: Vec<u8>,
     /// Standard output.
     pub stdout: Vec<u8>,

@@ -27,7 +27,7 @@ pub enum SandboxError {
     /// The supervisor ended without a report.
     #[error("the sandbox's supervisor was lost ({how}); its processes were ended")]
     Lost {
-        /// A description of its end, as far as it is known.
+        /// A description of its end, if it is known.
         how: String,
     },
     /// A step of the set-up failed.
@@ -54,7 +54,7 @@ pub enum SandboxError {
         /// The system's reason.
         source: io::Error,
     },
-    /// The program is not the one that was staged.
+    /// The program was changed after it was staged.
     #[error("{program} was changed or removed by somebody else while it was graded")]
     Changed {
         /// The program.

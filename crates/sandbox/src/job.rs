@@ -27,8 +27,8 @@ pub struct Limits {
     pub cpu: Duration,
     /// Time on the clock, from the start to the end.
     pub wall: Duration,
-    /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even where
-    /// the folder lies in memory, but while they are mapped. The stack of the main thread ends at 8 MiB in any case.
+    /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even if the
+    /// folder is in memory, except while they are mapped. The stack of the main thread ends at 8 MiB in any case.
     pub memory: u64,
     /// Bytes that are kept of standard output, and separately of standard error. The rest is read and dropped.
     pub output_bytes: u64,
@@ -62,12 +62,12 @@ impl Default for Limits {
     }
 }
 
-/// Which file lies at a path, and that nobody has written to it since.
+/// The identity of the file at a path, which shows that it was not written to since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ProgramIdentity([i64; 5]);
 
 impl ProgramIdentity {
-    /// Returns the identity of the regular file at the path, links followed; `None` where there is none.
+    /// Returns the identity of the regular file at the path, links followed; `None` if there is none.
     #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
@@ -124,9 +124,9 @@ impl Job {
         self
     }
 
-    /// Files and folders outside the working folder that the program may read (not change, not execute).
+    /// Sets files and folders outside the working folder that the program may read (not change, not execute).
     ///
-    /// When the grader is root the program runs as another user, so that these paths must be reachable by everybody.
+    /// When the grader is root the program runs as another user, so that these paths must be readable by all users.
     #[must_use]
     pub fn readable<P: Into<PathBuf>>(mut self, paths: impl IntoIterator<Item = P>) -> Self {
         self.readable = paths.into_iter().map(Into::into).collect();
@@ -134,16 +134,16 @@ impl Job {
     }
 
     /// Sets that the program writes its trace into the file `name` of the working folder, which has a limit of its own.
-    /// [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens what it left there.
+    /// [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens the trace.
     #[must_use]
     pub fn trace(mut self, name: impl Into<String>) -> Self {
         self.trace = Some(name.into());
         self
     }
 
-    /// Has the program work in a copy of the working folder that lies in memory, where there are namespaces and the
-    /// machine has room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program
-    /// left is in the [`LeftFolder`](crate::LeftFolder).
+    /// Lets the program work in a copy of the working folder in memory, if there are namespaces and the machine has
+    /// room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program left is in
+    /// the [`LeftFolder`](crate::LeftFolder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.in_memory = true;
@@ -177,16 +177,16 @@ impl Job {
     }
 
     /// Returns whether a program that was built with an address, thread or memory sanitizer may run. Sanitizers reserve
-    /// terabytes of address space, so that for such a program memory is limited only by what is seen in use, a moment
-    /// later.
+    /// terabytes of address space, so that for such a program memory is limited only by checks of the memory in use, a
+    /// moment later.
     #[must_use]
     pub fn sanitizers(mut self, allowed: bool) -> Self {
         self.sanitizers = allowed;
         self
     }
 
-    /// Says that the program is a copy of ours, with this identity: when it is gone or another file at the start, that
-    /// is our fault and not the program's.
+    /// Declares that the program is a copy of ours, with this identity: if it is missing or another file at the start,
+    /// that is our fault and not the program's.
     #[must_use]
     pub fn staged(mut self, identity: Option<ProgramIdentity>) -> Self {
         self.staged = identity;

@@ -33,8 +33,8 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Returns whether there can be a keeper for this order. Otherwise its supervisor serves no other run: where there
-    /// are no namespaces, which end with the run, or processes that nobody counts.
+    /// Returns whether there can be a keeper for this order. Otherwise its supervisor serves no other run: without
+    /// namespaces, which end with the run, or with processes that are not counted.
     pub(super) fn exists_for(order: &RunOrder) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
@@ -71,8 +71,8 @@ impl Keeper {
         Self { kind, child: Some(child), socket }
     }
 
-    /// Asks for a run of an order of its kind, whose files have these contents; the answer is the way to its
-    /// supervisor, and what that says.
+    /// Requests a run of an order of its kind, whose files have these contents; returns the connection to its
+    /// supervisor, and the supervisor's answer.
     pub(super) fn ask(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
@@ -85,7 +85,7 @@ impl Keeper {
     }
 
     fn dismiss(&self) {
-        // One that has ended hears nothing.
+        // A keeper that has ended receives nothing.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
 }
@@ -94,7 +94,7 @@ impl Drop for Keeper {
     fn drop(&mut self) {
         self.dismiss();
         if let Some(child) = &mut self.child {
-            // How it ends no longer matters.
+            // The way in which it ends no longer matters.
             let _ = child.wait();
         }
     }
@@ -107,7 +107,7 @@ pub(super) struct KeeperPool {
 }
 
 impl KeeperPool {
-    /// Takes a keeper for runs of this kind. Without one, one of another kind makes room for it.
+    /// Takes a keeper for runs of this kind. If there is none, a keeper of another kind makes room for it.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
@@ -116,7 +116,7 @@ impl KeeperPool {
             None => idle.pop(),
         };
         drop(idle);
-        // Dropped here, where nobody waits for the lock.
+        // Dropped here, where no thread waits for the lock.
         taken.filter(|_| fits.is_some())
     }
 
@@ -130,7 +130,7 @@ impl KeeperPool {
 pub(super) enum Host {
     /// A process of its own.
     Own(Child),
-    /// A keeper, and where it goes afterwards.
+    /// A keeper, and the place to which it returns.
     Kept(Box<Keeper>, Arc<KeeperPool>),
 }
 
@@ -152,11 +152,11 @@ impl Host {
             Self::Own(child) => Some(child),
             Self::Kept(keeper, _) => keeper.child.as_mut(),
         };
-        // One that has ended needs no end.
+        // A keeper that has ended needs no end.
         let _ = child.map(Child::kill);
     }
 
-    /// Keeps the keeper for another run, if the report says that its run ended by itself.
+    /// Keeps the keeper for another run, if its run ended by itself according to the report.
     pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {
@@ -172,8 +172,8 @@ impl Host {
     }
 }
 
-/// A keeper between two runs. Dropped, it serves others: by then the folder of its last run must be gone, whose pages
-/// count for the keeper's group.
+/// A keeper between two runs. Dropped, it serves others: by then the folder of its last run must be removed, because
+/// the folder's pages count for the keeper's group.
 #[derive(Debug)]
 pub(super) struct RestingKeeper {
     keeper: Option<Box<Keeper>>,

@@ -2,7 +2,7 @@
 use super::{fault::SandboxError, job::Job, wire};
 use std::{io, path::Path};
 
-/// Writes the job's files into its folder as it lies on the disk.
+/// Writes the job's files into its folder on the disk.
 pub(super) fn write_files(job: &Job) -> Result<(), SandboxError> {
     for (name, content) in &job.files {
         write_file(job, name, content)?;
@@ -10,7 +10,7 @@ pub(super) fn write_files(job: &Job) -> Result<(), SandboxError> {
     Ok(())
 }
 
-/// Writes a file of this name into the job's folder as it lies on the disk.
+/// Writes a file of this name into the job's folder on the disk.
 pub(super) fn write_file(job: &Job, name: &str, content: &[u8]) -> Result<(), SandboxError> {
     std::fs::write(job.folder.join(plain_name(job, name)?), content).map_err(|source| folder_fault(job, source))
 }

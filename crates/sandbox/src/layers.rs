@@ -14,7 +14,7 @@ macro_rules! layers {
         pub enum Layer { $($(#[$about])+ $layer,)+ }
 
         impl Layer {
-            /// All of them, in the order of a report.
+            /// All layers, in the order of a report.
             pub const ALL: [Self; [$(Self::$layer),+].len()] = [$(Self::$layer),+];
 
             /// Returns the name in reports.
@@ -43,7 +43,7 @@ layers! {
     FileRules "file rules (Landlock)";
     /// Landlock's rules for signals and abstract sockets.
     Scopes "signal scope (Landlock)";
-    /// Another user for every running program; only root can do this.
+    /// Another user for every running program; this needs root.
     OwnUser "a user per program";
     /// Namespaces: a world without other processes, without network, and with few files.
     Namespaces "namespaces";
@@ -77,7 +77,7 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     reports
 }
 
-/// Returns the report on a wall: what holds where it has no problem, and what to do where it has one.
+/// Returns the report on a wall: its effect if it has no problem, and the remedy if it has one.
 fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
     LayerReport {
         layer,
@@ -93,7 +93,7 @@ fn has_own_user(probe: &Probe) -> bool {
     probe.root && probe.own_user.is_none()
 }
 
-/// Returns the walls that a process puts up around itself, and what it needs to begin.
+/// Returns the walls that a process sets up around itself, and their needs.
 fn process_layers(probe: &Probe) -> [LayerReport; 4] {
     [
         report(
@@ -255,15 +255,14 @@ pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerRe
     reports
 }
 
-/// Returns the walls that the supervisor puts up, given the reports; `None` without the required set, with what is
-/// missing.
+/// Returns the walls that the supervisor puts up, given the reports; without the required set, the missing walls.
 pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
     let missing = missing(reports);
     if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
 }
 
 /// Returns the walls that hold, without regard to the required set. Only root must not run programs as itself: the
-/// error says why it would.
+/// error names the missing walls.
 pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
         Some(report) => Err(line(report)),

@@ -1,6 +1,6 @@
-//! Runs one program under limits and says how it ended.
+//! Runs one program under limits and reports how it ended.
 //!
-//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and an [`RunOutcome`] says what the
+//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and a [`RunOutcome`] holds what the
 //! kernel saw. [`Job`] is what to run, [`Backend`] is how, [`RunningProgram`] is a program at work.
 //!
 //! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
@@ -11,13 +11,13 @@
 //! grader, whatever kills them.
 //!
 //! Where the kernel lets it, the supervisor first moves into namespaces of its own, in which only the run's processes
-//! and files exist and no network; whatever dies there takes all below it along. This is a further wall, never the only
-//! one: everything else holds without it. There, runs of one submission have a *keeper* in common, which is prepared
-//! once and forks a supervisor for each run into fresh namespaces; one whose run was stopped, crashed or left anything
-//! serves no other.
+//! and files exist and no network; when a process dies there, all processes below it die, too. This is a further wall,
+//! never the only one: everything else holds without it. There, runs of one submission share a *keeper*, which is
+//! prepared once and forks a supervisor for each run into fresh namespaces. A keeper whose run was stopped, crashed or
+//! left anything serves no other run.
 //!
 //! The sandbox never trusts a path that the program could change, never reads a result while the program lives, and
-//! never goes on silently when a required layer is missing ([`Backend::best`] refuses).
+//! never continues silently when a required layer is missing ([`Backend::best`] fails).
 //!
 //! ```no_run
 //! use fosssim_sandbox::{Backend, Job, Supervisor};
@@ -62,7 +62,7 @@ pub use supervisor::supervisor_main;
 #[doc(hidden)]
 pub use wire::read_messages;
 
-/// Whose processor time is asked for.
+/// The owner of the requested processor time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeOf {
     /// This thread.
@@ -83,7 +83,7 @@ pub fn processor_time(of: TimeOf) -> std::time::Duration {
     }
 }
 
-/// Has this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
+/// Lets this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
 /// instead of ending it. The programs that it runs keep the signal, which then ends them.
 pub fn let_large_writes_fail() {
     sys::ignore_file_size_signal();

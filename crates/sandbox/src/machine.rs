@@ -1,4 +1,4 @@
-//! The machine's memory and its use, as the kernel tells them.
+//! The machine's memory and its use, as the kernel reports them.
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
@@ -12,23 +12,23 @@ fn asked() -> libc::sysinfo {
     }
 }
 
-/// Returns the bytes that a line of the kernel's tells after this word, in kB.
+/// Returns the bytes in a line of the kernel's report after this word, in kB.
 pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(word)?.strip_suffix(" kB"))?;
     line.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// Returns whether memory may be moved to a disk, where it is resident for nobody.
+/// Returns whether memory may be moved to a disk, where it counts as resident for no process.
 pub(super) fn has_swap() -> bool {
     asked().totalswap > 0
 }
 
-/// Returns the answer to `sysinfo` as of a machine on which nothing is in use and nobody else runs, in the kernel's
+/// Returns the answer to `sysinfo` of a machine on which nothing is in use and no other process runs, in the kernel's
 /// form.
 pub(super) fn without_others() -> Vec<u8> {
     let about = asked();
-    // SAFETY: an all-zero structure is valid. It is made of integers only; what may lie between them is zero as well,
-    // and its bytes are read while it lives.
+    // SAFETY: an all-zero structure is valid. It is made of integers only; the bytes between them are zero as well, and
+    // all bytes are read while it lives.
     unsafe {
         let mut told: libc::sysinfo = std::mem::zeroed();
         (told.uptime, told.mem_unit, told.procs) = (about.uptime, about.mem_unit, 1);

@@ -45,11 +45,11 @@ pub(super) fn unshare(flags: i32) -> io::Result<()> {
     check_answer(unsafe { libc::unshare(flags) })
 }
 
-/// Forks into new namespaces (`CLONE_NEW*`), in which the child is at once, and the first process if one is of
-/// processes.
+/// Forks into new namespaces (`CLONE_NEW*`). The child is in them immediately, and is the first process of a namespace
+/// of processes.
 pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
     let flags = namespaces | libc::SIGCHLD;
-    // SAFETY: without a stack of its own the child goes on with a copy of ours, as after `fork`; the process has one
+    // SAFETY: without a stack of its own the child continues with a copy of ours, as after `fork`; the process has one
     // thread, so that the copy is consistent. The other arguments are for flags that are not set.
     match check(unsafe { libc::syscall(libc::SYS_clone, flags, 0, 0, 0, 0) })? {
         0 => Ok(Fork::Child),
@@ -57,19 +57,19 @@ pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
     }
 }
 
-/// Has no mount of this namespace show anywhere else.
+/// Hides mounts of this namespace everywhere else.
 pub(super) fn keep_to_ourselves() -> io::Result<()> {
     Ok(mount_change(c"/", MountPropagationFlags::PRIVATE | MountPropagationFlags::REC)?)
 }
 
-/// Mounts a fresh file system of this kind. What set-user bits and devices mean there is: nothing. Its files may be
-/// executed only where that is said.
+/// Mounts a fresh file system of this kind. Set-user bits and devices have no effect in it; its files may be executed
+/// only on request.
 pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr, executable: bool) -> io::Result<()> {
     let limits = if executable { MountFlags::empty() } else { MountFlags::NOEXEC };
     Ok(rustix::mount::mount(kind, target, kind, MountFlags::NOSUID | MountFlags::NODEV | limits, options)?)
 }
 
-/// Returns a copy of the mounts at and beneath the path, which lies nowhere yet. A link at its end is not followed.
+/// Returns a copy of the mounts at and beneath the path, which is not attached yet. A link at its end is not followed.
 pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
     let kind = OpenTreeFlags::OPEN_TREE_CLONE | OpenTreeFlags::OPEN_TREE_CLOEXEC;
     Ok(open_tree(CWD, path, kind | OpenTreeFlags::AT_RECURSIVE | OpenTreeFlags::AT_SYMLINK_NOFOLLOW)?)
@@ -105,12 +105,12 @@ pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
     std::env::set_current_dir("/")
 }
 
-/// Returns whether the open file lies where nothing may be executed (a mount with `noexec`).
+/// Returns whether the open file is where nothing may be executed (a mount with `noexec`).
 pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
     rustix::fs::fstatvfs(fd).is_ok_and(|about| about.f_flag.contains(StatVfsMountFlags::NOEXEC))
 }
 
-/// Bytes and files of the file system that the descriptor lies on.
+/// Returns the bytes and files of the descriptor's file system.
 pub(super) fn file_system_usage(fd: BorrowedFd<'_>) -> io::Result<(u64, u64)> {
     let about = rustix::fs::fstatvfs(fd)?;
     let bytes = about.f_blocks.saturating_sub(about.f_bfree).saturating_mul(about.f_frsize);

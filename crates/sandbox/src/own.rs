@@ -14,20 +14,20 @@ use std::{
 
 /// This very program.
 const THIS: &str = "/proc/self/exe";
-/// How the name of the sample begins.
+/// The beginning of the sample's name.
 const SAMPLE: &str = "fosssim-sample";
-/// How the names of the grader's programs begin.
+/// The beginnings of the names of the grader's programs.
 const NAMES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
 /// The place where they are usually installed.
 const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
-/// How the names begin of the module for Python and of the folder that `pip` makes beside it.
+/// The beginnings of the names of the module for Python and of the folder that `pip` makes next to it.
 const MODULE: &str = "fosssim";
 /// The place where the folders of Pythons are.
 const PYTHONS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
-/// Where modules are in the folder of a Python.
+/// The place of modules in the folder of a Python.
 const MODULES: [&str; 2] = ["dist-packages", "site-packages"];
 
-/// Returns whether the file's name is one of the grader's programs.
+/// Returns whether the file's name is that of a grader's program.
 pub(super) fn is_name(path: &Path) -> bool {
     path.file_name().is_some_and(is_named)
 }
@@ -40,7 +40,7 @@ fn begins(name: &OsStr, own: &str) -> bool {
     name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()))
 }
 
-/// Returns the entries of a folder; none where it can't be read.
+/// Returns the entries of a folder; none if it can't be read.
 fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
     std::fs::read_dir(folder).into_iter().flatten().flatten()
 }
@@ -63,12 +63,12 @@ pub(super) fn known(supervisor: &Path) -> Arc<[PathBuf]> {
     known.entry(supervisor.to_path_buf()).or_insert_with(|| files(&[Path::new(THIS), supervisor]).into()).clone()
 }
 
-/// Returns the resolved paths of these programs, of their siblings beside them, and of those that are installed.
+/// Returns the resolved paths of these programs, of their siblings next to them, and of installed ones.
 fn files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
     let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
     let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
-    // Some of them are links to others, and large.
+    // Some of the files are links to others, and large.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| entries(folder));
     let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
@@ -80,8 +80,8 @@ fn files(programs: &[&Path]) -> Vec<PathBuf> {
     files
 }
 
-/// Returns whether a file of this length and digest is one of the grader's own programs. The sample may be graded where
-/// it lies (`itself`), to show that all works; a copy of it, or the grader in any form, is nobody's submission.
+/// Returns whether a file of this length and digest is one of the grader's own programs. The sample may be graded in
+/// its own place (`itself`), to show that all works; a copy of it, or the grader in any form, is no submission.
 #[must_use]
 pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
     files(&[Path::new(THIS)]).into_iter().any(|path| {
@@ -102,13 +102,13 @@ fn digest_of(path: &Path) -> Option<blake3::Hash> {
 /// A path that may be allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum AllowedPath {
-    /// With all that lies beneath it.
+    /// The place with all beneath it.
     Whole(PathBuf),
     /// A folder that may only be listed, with all beneath it.
     Listing(PathBuf),
 }
 
-/// Returns the rules that allow everything at and beneath `path` except what is `own` (resolved paths).
+/// Returns the rules that allow everything at and beneath `path` except `own` (resolved paths).
 ///
 /// Links beneath a folder that is split are left out: their targets are allowed in their own places, or not at all.
 pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {

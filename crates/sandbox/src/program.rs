@@ -1,7 +1,7 @@
-//! The kind of a program, told by its first bytes before anything is executed.
+//! The kind of a program, found by its first bytes before anything is executed.
 //!
-//! No header of what was handed in is followed: the first bytes say for which machine it was made, and the kernel and
-//! the loader say the rest, inside the limits. Only the first line of a script is read, because the system's
+//! No header of a submitted file is followed: the first bytes show the machine for which it was made, and the kernel
+//! and the loader find the rest, inside the limits. Only the first line of a script is read, because the system's
 //! interpreter is executed in the script's place.
 
 use std::{
@@ -13,13 +13,13 @@ use std::{
 
 use super::{outcome::StartProblem, own};
 
-/// How an ELF file begins.
+/// The first bytes of an ELF file.
 const ELF_MAGIC: &[u8] = b"\x7fELF";
-/// Bytes that tell the kind of a file; the kernel looks at as many for the first line of a script.
+/// The number of bytes that show the kind of a file; the kernel reads as many for the first line of a script.
 const FIRST_BYTES: u64 = 256;
-/// Where the system keeps the programs that a script may name, in the order of the sandbox's `PATH`.
+/// The folders of the system's programs that a script may name, in the order of the sandbox's `PATH`.
 const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
-/// Where interpreters are kept that are linked from the folders of programs.
+/// The folders of interpreters that are linked from the folders of programs.
 const LIBRARIES: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
 
 /// The facts about a program that the sandbox needs before it starts it.
@@ -29,7 +29,7 @@ pub(super) struct Program {
     pub(super) executable: Vec<PathBuf>,
     /// The files under the names by which they are requested, which may be links.
     pub(super) named: Vec<PathBuf>,
-    /// How a script is run.
+    /// The way to run a script.
     pub(super) script: Option<Script>,
 }
 
@@ -45,8 +45,8 @@ pub(super) struct Script {
     pub(super) environment: Vec<(String, String)>,
 }
 
-/// Looks at the file at `path`, following symbolic links. `own` are the grader's own programs, which are never run as
-/// a submission, an interpreter or a loader.
+/// Examines the file at `path`, following symbolic links. `own` are the grader's own programs, which are never run as a
+/// submission, an interpreter or a loader.
 ///
 /// # Errors
 ///
@@ -68,7 +68,7 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     if metadata.permissions().mode() & 0o111 == 0 {
         return Err(StartProblem::NotExecutable);
     }
-    // A program that may be executed and not read would also be closed to the supervisor's looks.
+    // A program that may be executed and not read would also be closed to the supervisor's checks.
     let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
     match (start.strip_prefix(b"#!"), other_system(&start)) {
         (Some(line), _) => interpreted(line, own, 0),
@@ -88,7 +88,7 @@ fn other_system(start: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Returns the bytes that tell the kind of the file; `None` where it can't be read.
+/// Returns the bytes that show the kind of the file; `None` if it can't be read.
 fn first_bytes(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     File::open(path).ok()?.take(FIRST_BYTES).read_to_end(&mut start).ok()?;
@@ -97,9 +97,9 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 
 /// Returns the way to a script's interpreter, given its first line without `#!`.
 ///
-/// Each program that is named here becomes executable for the submission. So it must be one of the system's own
+/// Each program that is named here becomes executable for the submission. It must therefore be one of the system's own
 /// programs, after all links and `..` are resolved: a script that names the grader's program would be graded by its own
-/// answers. Nothing is looked up outside the system's folders, which would tell what files there are.
+/// answers. Nothing is looked up outside the system's folders, because that would reveal what files there are.
 fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
     /// The depth of interpreters that are scripts themselves; the kernel follows as many.
     const DEEPEST: u32 = 4;
@@ -164,7 +164,8 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
     Ok(Program { script: Some(script), ..program })
 }
 
-/// Returns the command that `env` would look up, with its arguments, given what follows `env` in a script's first line.
+/// Returns the command that `env` would look up, with its arguments, given the words after `env` in a script's first
+/// line.
 fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String, Vec<String>), StartProblem> {
     // Without -S the kernel passes all that follows as one word.
     let Some(split) = rest.strip_prefix("-S").or_else(|| rest.strip_prefix("--split-string=")) else {
@@ -182,7 +183,7 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
     Ok((name.to_owned(), words.map(str::to_owned).collect()))
 }
 
-/// Returns whether the path names a place in one of the system's folders, by its words alone.
+/// Returns whether the path is in one of the system's folders, by its words alone.
 fn is_systems(path: &Path) -> bool {
     let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
     plain && PROGRAMS.iter().chain(&LIBRARIES).any(|folder| path.starts_with(folder))
@@ -194,7 +195,7 @@ fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
     let resolved = path.canonicalize().map_err(|_| refused())?;
     let beneath = |folder: &&str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
-    // The bit by which every user may execute. A file that its owner keeps to himself would be refused only when it is
+    // The bit by which every user may execute. A file that only its owner may execute would be rejected only when it is
     // too late.
     const EXECUTE: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
@@ -213,7 +214,7 @@ fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
     here.is_some() && own.iter().any(|own| identity(own) == here)
 }
 
-/// Checks that a file that begins so is an ELF program for this machine.
+/// Checks that a file with this beginning is an ELF program for this machine.
 fn elf(start: &[u8]) -> Result<(), StartProblem> {
     if !start.starts_with(ELF_MAGIC) {
         return Err(StartProblem::NotAProgram);

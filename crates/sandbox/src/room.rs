@@ -1,4 +1,4 @@
-//! How much memory the machine can spare for working folders.
+//! The memory that the machine can spare for working folders.
 
 use std::{
     path::{Path, PathBuf},
@@ -8,8 +8,8 @@ use std::{
 
 use super::machine;
 
-/// Returns whether a folder of this number of bytes may lie in memory: as many as there can be runs at one time, and as
-/// much again for the programs, must leave the machine and our own control groups room.
+/// Returns whether a folder of this number of bytes may be in memory. The machine and our own control groups must have
+/// room for as many folders as there can be runs at one time, and as much again for the programs.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));

@@ -1,4 +1,4 @@
-//! A program at work: the means to stop it, its outcome, and what it left.
+//! A running program: the means to stop it, its outcome, and the files that it left.
 
 use std::{
     fs::File,
@@ -19,7 +19,7 @@ use super::{
     wire::{self, COMMAND_CANCEL, Event, RunOrder},
 };
 
-/// The way to the supervisor; gone when the run is over.
+/// The connection to the supervisor; `None` when the run is over.
 type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
 /// A program at work. Dropped, it is stopped, and the drop waits until every process is dead.
@@ -52,7 +52,7 @@ pub(super) struct SupervisedRun {
 }
 
 impl RunningProgram {
-    /// Creates a run whose supervisor has said that it is ready.
+    /// Creates a run whose supervisor has reported that it is ready.
     pub(super) fn new(supervised: SupervisedRun, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
         let folder = LeftFolder { in_memory, path: wire::path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
@@ -87,7 +87,7 @@ impl RunningProgram {
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
 
-    /// Waits as [`RunningProgram::wait`] does, and returns also what the program left in its working folder.
+    /// Waits as [`RunningProgram::wait`] does, and returns also the files that the program left in its working folder.
     ///
     /// # Errors
     ///
@@ -153,7 +153,7 @@ pub struct LeftFolder {
 
 impl LeftFolder {
     /// Returns the folder, if the program worked in a copy in memory
-    /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise it is where the job says.
+    /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise it is the job's folder on the disk.
     #[must_use]
     pub fn in_memory(&self) -> Option<&OpenFolder> {
         self.in_memory.as_ref()
@@ -201,7 +201,7 @@ pub struct Canceller {
 }
 
 impl Canceller {
-    /// Has the program and all that it started killed; [`RunningProgram::wait`] then says `Cancelled`.
+    /// Kills the program and all that it started; [`RunningProgram::wait`] then returns `Cancelled`.
     pub fn cancel(&self) {
         if let Some(control) = self.control.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
             // A supervisor that has ended needs no command.

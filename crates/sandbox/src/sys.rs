@@ -1,6 +1,6 @@
 //! The system calls that the standard library does not offer, each behind a safe function: most are `rustix`'s.
 //!
-//! This file, `machine.rs` and `mounts.rs` are the sandbox's only ones with `unsafe` code. Every function passes the
+//! This file, `machine.rs` and `mounts.rs` are the sandbox's only files with `unsafe` code. Every function passes the
 //! kernel valid pointers to live values and turns its answer into a `Result`; none keeps a pointer. The one call with a
 //! condition of its own, [`fork`], checks that condition.
 
@@ -37,7 +37,7 @@ pub(super) fn check(answer: i64) -> io::Result<i64> {
     if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
 }
 
-/// Returns the error of a call whose answer says no more than that.
+/// Returns the error of a call whose answer has no other content.
 pub(super) fn check_answer(answer: i32) -> io::Result<()> {
     check(i64::from(answer)).map(drop)
 }
@@ -58,7 +58,7 @@ pub(super) struct SingleThread(());
 ///
 /// # Errors
 ///
-/// When the process has more than one thread: its child could find locks held for ever.
+/// When the process has more than one thread: its child could find locks that are held forever.
 pub(super) fn single_thread() -> io::Result<SingleThread> {
     match std::fs::read_dir("/proc/self/task")?.count() {
         1 => Ok(SingleThread(())),
@@ -80,7 +80,7 @@ pub(super) fn fork_alone(_: &SingleThread) -> io::Result<Fork> {
     }
 }
 
-/// Ends the process at once, without running anything on the way out.
+/// Ends the process immediately, without running exit handlers.
 pub(super) fn exit_now(code: i32) -> ! {
     // SAFETY: takes an integer and does not return.
     unsafe { libc::_exit(code) }
@@ -106,12 +106,12 @@ pub(super) fn become_reaper() -> io::Result<()> {
     Ok(rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?)
 }
 
-/// Has the kernel kill this process when its parent dies.
+/// Makes the kernel kill this process when its parent dies.
 pub(super) fn die_with_parent() -> io::Result<()> {
     Ok(rustix::process::set_parent_process_death_signal(Some(Signal::KILL))?)
 }
 
-/// Gives up for ever the gain of privileges by executing a program.
+/// Gives up forever the gain of privileges by executing a program.
 pub(super) fn no_new_privileges() -> io::Result<()> {
     Ok(rustix::thread::set_no_new_privs(true)?)
 }
@@ -122,7 +122,7 @@ pub(super) fn limit(resource: Resource, value: u64) -> io::Result<()> {
     Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
 }
 
-/// Becomes another user and group for good, and leaves all supplementary groups.
+/// Becomes another user and group permanently, and leaves all supplementary groups.
 pub(super) fn switch_user(id: u32) -> io::Result<()> {
     let (user, group) = (Uid::from_raw(id), Gid::from_raw(id));
     rustix::thread::set_thread_groups(&[])?;
@@ -130,11 +130,11 @@ pub(super) fn switch_user(id: u32) -> io::Result<()> {
     Ok(rustix::thread::set_thread_res_uid(user, user, user)?)
 }
 
-/// Does something with the file permissions of another user, as who root may look into that user's `/proc` entries even
-/// without the capability to trace. Only the supervisor's single thread does this, and it always comes back.
+/// Calls a function with the file permissions of another user: root may then read that user's `/proc` entries even
+/// without the capability to trace. Only the supervisor's single thread does this, and it always restores its own.
 pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) -> T {
     let Some(user) = user else { return action() };
-    // SAFETY: integers only; both answer the previous id and change nothing where it is not allowed.
+    // SAFETY: integers only; both return the previous id, and change nothing if it is not allowed.
     let (old_group, old_user) = unsafe { (libc::setfsgid(user), libc::setfsuid(user)) };
     let result = action();
     // SAFETY: as above.
@@ -162,7 +162,7 @@ pub(super) fn keep_on_execute(fd: BorrowedFd<'_>) -> io::Result<()> {
     Ok(rustix::io::fcntl_setfd(fd, FdFlags::empty())?)
 }
 
-/// Has every descriptor from 3 on closed by the next `execve`.
+/// Marks every descriptor from 3 on to be closed by the next `execve`.
 pub(super) fn close_on_execute() -> io::Result<()> {
     // SAFETY: integers only.
     if unsafe { libc::syscall(libc::SYS_close_range, 3_u32, u32::MAX, libc::CLOSE_RANGE_CLOEXEC) } == 0 {
@@ -172,19 +172,19 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     for entry in std::fs::read_dir("/proc/self/fd")? {
         let Some(fd) = entry?.file_name().to_str().and_then(|name| name.parse::<RawFd>().ok()) else { continue };
         if fd > 2 {
-            // SAFETY: integers only; a descriptor that has gone meanwhile is refused by the kernel.
+            // SAFETY: integers only; the kernel rejects a descriptor that was closed meanwhile.
             unsafe { libc::fcntl(fd, libc::F_SETFD, libc::FD_CLOEXEC) };
         }
     }
     Ok(())
 }
 
-/// Returns the signals that this process ignores. Only these stay as they are when a program is executed: what has a
-/// function gets the default reaction then.
+/// Returns the signals that this process ignores. Only these stay as they are when a program is executed: signals with
+/// a function get the default reaction then.
 pub(super) fn ignored_signals() -> Vec<i32> {
     let is_ignored = |signal: &i32| {
-        // SAFETY: an all-zero action is valid and outlives the call, which only asks; numbers without a signal are
-        // refused by the kernel.
+        // SAFETY: an all-zero action is valid and outlives the call, which only reads; the kernel rejects numbers
+        // without a signal.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             libc::sigaction(*signal, std::ptr::null(), &raw mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
@@ -195,8 +195,8 @@ pub(super) fn ignored_signals() -> Vec<i32> {
 
 /// Restores the default reaction to these signals and unblocks all.
 pub(super) fn default_signals(ignored: &[i32]) {
-    // SAFETY: the default action needs no function; numbers without a signal are refused by the kernel. The set is
-    // initialized by `sigemptyset` before it is read.
+    // SAFETY: the default action needs no function; the kernel rejects numbers without a signal. The set is initialized
+    // by `sigemptyset` before it is read.
     unsafe {
         for signal in ignored {
             libc::signal(*signal, libc::SIG_DFL);
@@ -221,12 +221,12 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     check_answer(unsafe { libc::kill(pid, signal) })
 }
 
-/// Kills everybody in this process namespace if this process is the namespace's first, which is the answer; nothing
-/// otherwise.
+/// Kills all processes in this process namespace if this process is the namespace's first, and returns whether it is;
+/// does nothing otherwise.
 pub(super) fn kill_everybody_inside() -> bool {
     let is_first = std::process::id() == 1;
     if is_first {
-        // SAFETY: integers only. For the first process of a namespace -1 means everybody else in it, and nobody
+        // SAFETY: integers only. For the first process of a namespace -1 means all other processes in it, and none
         // outside.
         unsafe { libc::kill(-1, libc::SIGKILL) };
     }
@@ -280,11 +280,11 @@ pub(super) enum Readiness {
     Idle,
     /// There is something to read, or its end.
     Ready,
-    /// Nobody is left at the other end, and nothing to read.
+    /// The other end is closed, and there is nothing to read.
     HungUp,
 }
 
-/// Waits until one of the descriptors can be read or was hung up, or until the time is over. The answer says which.
+/// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns which.
 pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
     let there = fds.iter().flatten();
     let mut list: Vec<PollFd<'_>> = there.map(|fd| PollFd::from_borrowed_fd(*fd, PollFlags::IN)).collect();
@@ -301,7 +301,7 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     }))
 }
 
-/// Has writes beyond the limit of file sizes fail instead of ending the process.
+/// Lets writes beyond the limit of file sizes fail instead of ending the process.
 pub(super) fn ignore_file_size_signal() {
     // SAFETY: ignoring a signal needs no function.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
@@ -312,7 +312,7 @@ pub(super) fn process_descriptor(pid: i32) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_raw(pid)?, PidfdFlags::empty()).ok()
 }
 
-/// Makes reads and writes on the descriptor return at once when they would wait, or wait again.
+/// Makes reads and writes on the descriptor return immediately instead of waiting, or wait again.
 pub(super) fn set_blocking(fd: BorrowedFd<'_>, blocking: bool) -> io::Result<()> {
     Ok(rustix::io::ioctl_fionbio(fd, !blocking)?)
 }
@@ -345,7 +345,7 @@ pub(super) fn accessible(path: &CStr, mode: Access) -> bool {
     rustix::fs::access(path, mode).is_ok()
 }
 
-/// Returns a file in memory that nobody else can name.
+/// Returns a file in memory that no other process can name.
 pub(super) fn memory_file() -> io::Result<OwnedFd> {
     Ok(rustix::fs::memfd_create(c"program", MemfdFlags::CLOEXEC)?)
 }
@@ -381,7 +381,7 @@ pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environm
 }
 
 /// Installs a seccomp filter for this thread and its children. With `listener`, calls that the filter hands to user
-/// space are announced on the descriptor that comes back.
+/// space are announced on the returned descriptor.
 pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Result<Option<OwnedFd>> {
     #[repr(C)]
     struct Program {
@@ -412,9 +412,9 @@ pub(super) struct PendingCall {
 
 /// Takes the next announcement; `None` when the caller has died meanwhile.
 pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<PendingCall>> {
-    // SAFETY: an all-zero notification is valid, and the kernel asks for zeros.
+    // SAFETY: an all-zero notification is valid, and the kernel requires zeros.
     let mut notification: libc::seccomp_notif = unsafe { std::mem::zeroed() };
-    // SAFETY: the structure is the one that this request fills, and it outlives the call.
+    // SAFETY: this request fills exactly this structure, which outlives the call.
     let answer = unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_RECV, &raw mut notification) };
     match check(i64::from(answer)) {
         Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::EINTR)) => Ok(None),
@@ -440,7 +440,7 @@ pub(super) fn processor_time(of_thread: bool) -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
 
-/// Returns the time since the clock's beginning: the calendar's clock, or the one that always goes on.
+/// Returns the time since the clock's beginning: the calendar's clock, or the steady one.
 pub(super) fn time_by(calendar: bool) -> Duration {
     let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
@@ -449,7 +449,7 @@ pub(super) fn time_by(calendar: bool) -> Duration {
 /// The answer to an announced call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CallAnswer {
-    /// The call goes on as if it had not been announced.
+    /// The call continues as if it had not been announced.
     GoOn,
     /// The call has succeeded already.
     Done,
@@ -465,7 +465,7 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> i
         CallAnswer::Refused(errno) => (-errno, 0),
     };
     let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags };
-    // SAFETY: the structure is the one that this request reads, and it outlives the call.
+    // SAFETY: this request reads exactly this structure, which outlives the call.
     check_answer(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
 }
 
@@ -482,7 +482,7 @@ pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [
     Ok(())
 }
 
-/// Receives bytes and the descriptors that came along. No bytes mean that the other side is closed.
+/// Receives bytes and the descriptors that were sent with them. No bytes mean that the other side is closed.
 pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
     let mut control = RecvAncillaryBuffer::new(&mut space);

@@ -1,9 +1,9 @@
 //! The messages between the grader and its supervisor process.
 //!
 //! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if need
-//! be, a command byte. A working folder in memory comes back there, open. The supervisor answers on its standard output
-//! with length-prefixed [`Event`]s; the last one is followed by the captured bytes. Paths travel as bytes, because they
-//! need not be UTF-8.
+//! be, a command byte. A working folder in memory is returned there, open. The supervisor answers on its standard
+//! output with length-prefixed [`Event`]s; the last one is followed by the captured bytes. Paths are sent as bytes,
+//! because they need not be UTF-8.
 
 use std::{
     io::{self, Read, Write},
@@ -29,7 +29,7 @@ const LONGEST_MESSAGE: u64 = 64 << 20;
 /// Starts a run in a supervisor that serves several. Comes with three descriptors: the channel of commands, the channel
 /// of answers, and the working folder on the disk.
 pub(super) const RUN: u8 = b'r';
-/// Tells the grader of a working folder in memory. Comes with the folder.
+/// Announces a working folder in memory to the grader. It is sent with the folder.
 pub(super) const FOLDER: u8 = b'f';
 
 /// Bytes of a path or an argument.
@@ -45,7 +45,7 @@ pub(super) fn path(raw: &RawBytes) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
-/// Returns the name of an entry of a folder, if these bytes are one: it leads to no other folder.
+/// Returns the name of an entry of a folder, if these bytes are such a name: it leads to no other folder.
 pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
     let leads_on = raw.is_empty() || raw == b"." || raw == b".." || raw.iter().any(|byte| matches!(byte, b'/' | 0));
     (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
@@ -81,10 +81,10 @@ pub(super) struct RunOrder {
     pub(super) own: Vec<RawBytes>,
     /// The name of the trace in the working folder.
     pub(super) trace: Option<RawBytes>,
-    /// Files that are laid into the working folder, by name, with their length: their bytes follow the order. Only
-    /// where that folder lies in memory.
+    /// Files that are written into the working folder, by name, with their length: their bytes follow the order. Only
+    /// if that folder is in memory.
     pub(super) files: Vec<(RawBytes, u64)>,
-    /// Whether the working folder lies in memory. The supervisor then hands it to the grader.
+    /// Whether the working folder is in memory. The supervisor then hands it to the grader.
     pub(super) volatile: bool,
     pub(super) tools: bool,
     /// The interpreter of a script, which is executed in its place.
@@ -119,7 +119,7 @@ pub(super) enum Event {
     Ready { session: Option<i32>, user: Option<u32> },
     /// The sandbox could not be put up; our fault.
     Failed(Failure),
-    /// Everything is dead; the captured bytes of both streams follow.
+    /// All processes are dead; the captured bytes of both streams follow.
     Done(Report),
 }
 
@@ -230,8 +230,8 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     Ok(serde_json::from_slice(&receive_bytes(from, length)?)?)
 }
 
-/// Reads as many messages of each kind as these bytes hold, and asks that each be the same once it was sent: for the
-/// fuzz target. The number of messages.
+/// Reads as many messages of each kind as these bytes hold, and requires that each is the same after sending: for the
+/// fuzz target. Returns the number of messages.
 #[doc(hidden)]
 #[must_use]
 pub fn read_messages(bytes: &[u8]) -> usize {

@@ -2,7 +2,7 @@
 use chrono::DateTime;
 use std::ops::RangeInclusive;
 
-/// Returns a moment by its milliseconds since 1970, in a form; nothing where no calendar reaches.
+/// Returns a moment by its milliseconds since 1970, as a form's field has it; `None` beyond the calendar.
 fn written(milliseconds: i64, form: &str) -> String {
     DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
 }
@@ -17,7 +17,7 @@ pub fn exact(milliseconds: i64) -> String {
     written(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
-/// Moments in milliseconds: between these, numbers are seconds that somebody took for milliseconds.
+/// Moments in milliseconds: numbers between these are seconds that a client took for milliseconds.
 pub const PLAUSIBLE: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
 
 /// Returns whether a number is a moment in milliseconds.
@@ -25,8 +25,8 @@ pub fn is_plausible(milliseconds: i64) -> bool {
     PLAUSIBLE.iter().any(|range| range.contains(&milliseconds))
 }
 
-/// Reads a moment that somebody wrote (ISO 8601): `2026-12-01T23:59:00+01:00`, also without seconds, and with `Z`.
-/// Without a time zone it is none.
+/// Reads a moment in ISO 8601: `2026-12-01T23:59:00+01:00`, also without seconds, and with `Z`. The time zone is
+/// required.
 pub fn read(text: &str) -> Option<i64> {
     let text = text.trim().replace(' ', "T");
     let text = match text.strip_suffix(['Z', 'z']) {
@@ -38,7 +38,7 @@ pub fn read(text: &str) -> Option<i64> {
     Some(moment.timestamp_millis())
 }
 
-/// Reads a moment as a form's field says it, `2026-12-01T23:59`, this many minutes east of UTC.
+/// Reads a moment as a form's field writes it, `2026-12-01T23:59`, this many minutes east of UTC.
 pub fn read_field(text: &str, east: i64) -> Option<i64> {
     let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
     Some(read(&format!("{text}{seconds}"))? - east * 60_000)

@@ -1,5 +1,5 @@
-//! How workers and suites are doing: faults of the grader are counted by both, so that a worker that fails leaves the
-//! work to others, and a suite by which nothing can be graded waits for staff.
+//! The health of workers and suites. Faults of the grader count for both: a worker that fails leaves the work to
+//! others, and a suite by which nothing can be graded waits for staff.
 use crate::{
     db::{DbError, Transaction},
     queue::{Claimant, QueuePolicy, millis},
@@ -10,10 +10,10 @@ use std::time::Duration;
 /// After this many faults in a row a worker leaves jobs to others that had none since their last result.
 const STEPS_ASIDE: i64 = 3;
 
-/// For so long, at most; it doubles from a second on.
+/// The longest pause; it doubles from a second on.
 const LONGEST_ASIDE: Duration = Duration::from_secs(60);
 
-/// Returns how long after its last sign of life a worker counts as alive, in milliseconds.
+/// Returns the time after its last sign of life for which a worker counts as alive, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
 }
@@ -48,7 +48,7 @@ pub async fn note_sign_of_life(
 }
 
 /// Returns whether a worker may claim: it holds no more jobs than its token has slots, and it does not fail while
-/// others do not.
+/// others succeed.
 ///
 /// # Errors
 /// An error of the database.
@@ -74,7 +74,7 @@ pub async fn may_claim(
     let Some(row) = row else { return Ok(true) };
     let steps = u32::try_from(row.int("in_a_row")? - STEPS_ASIDE).unwrap_or(0).min(16);
     let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(LONGEST_ASIDE);
-    // A fault that lies ahead is of a clock that was set back.
+    // A fault in the future comes from a clock that was set back.
     let since = row.maybe_int("since")?.and_then(|since| u64::try_from(since).ok());
     if since.is_none_or(|since| Duration::from_millis(since) >= aside) {
         return Ok(true);
@@ -85,7 +85,7 @@ pub async fn may_claim(
     Ok(better.is_none())
 }
 
-/// Notes that the grader failed in this worker, which says that it can grade.
+/// Notes that the grader failed in this worker, which reported that it can grade.
 pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
@@ -99,7 +99,7 @@ pub(crate) async fn note_result(transaction: &mut Transaction, worker: &str) -> 
     Ok(())
 }
 
-/// Returns a message without the folders of the machine that it comes from: of an absolute path the last name is left.
+/// Returns a message without the folders of its machine: only the last name of an absolute path is left.
 pub fn without_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;

@@ -1,5 +1,5 @@
-//! Numbers for a monitor, in Prometheus' text format: what the server counts about itself, what its process and disk
-//! come to, and what the database knows of the queue. They tell of nobody.
+//! Numbers for a monitor, in Prometheus' text format: the server's own counts, the state of its process and disk, and
+//! the database's counts of the queue. They describe no person.
 use crate::storage::Storage;
 use prometheus::{
     CounterVec, GaugeVec, HistogramOpts, HistogramVec, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
@@ -18,7 +18,7 @@ pub struct Instruments {
     in_flight: IntGauge,
 }
 
-/// A request that is being answered; it counts when it is told what came of it, or is dropped.
+/// A request that is being answered; it counts when its result is noted, or when it is dropped.
 #[derive(Debug)]
 pub struct InFlight(IntGauge);
 
@@ -83,14 +83,14 @@ impl Instruments {
     }
 }
 
-/// The numbers that can be counted without knowing anybody.
+/// The numbers that can be counted without names.
 #[derive(Debug, Clone, Default)]
 pub struct Metrics {
     /// Jobs by state.
     pub jobs: Vec<(String, i64)>,
     /// Scores for learning platforms by state.
     pub scores: Vec<(String, i64)>,
-    /// How long the oldest waiting job has waited, in milliseconds.
+    /// The time that the oldest waiting job has waited, in milliseconds.
     pub oldest: i64,
     /// Workers that were seen lately.
     pub workers: i64,
@@ -100,7 +100,7 @@ pub struct Metrics {
     pub aside: i64,
     /// Workers that grade something.
     pub working: i64,
-    /// Events by kind, of those kinds that somebody should look at.
+    /// Events by kind, for the kinds that need attention.
     pub events: Vec<(String, i64)>,
     /// Bytes of uploads and reports that are kept, in all and of the course that has most.
     pub kept: [i64; 2],

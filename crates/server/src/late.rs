@@ -1,4 +1,4 @@
-//! The worth of a submission that came after it was due.
+//! The worth of a submission that arrived after it was due.
 use crate::db::{DbError, Row};
 use chrono::{DateTime, Days};
 use chrono_tz::Tz;
@@ -18,17 +18,17 @@ pub(crate) struct LatePolicy {
     pub(crate) time_zone: Option<Tz>,
 }
 
-/// How late a submission came.
+/// The delay of a submission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Lateness {
     /// Days after the due date; a day that has begun counts.
     pub days: i64,
-    /// How many percent of the grader's points it loses.
+    /// The percentage of the grader's points that it loses.
     pub percent: i64,
 }
 
 impl LatePolicy {
-    /// Returns the last moment at which an upload is taken of somebody for whom it is due then.
+    /// Returns the last moment at which an upload is accepted from a student with this due date.
     pub(crate) fn closes_at(&self, due: i64) -> i64 {
         self.days_after(due, self.late_days.into())
     }
@@ -43,8 +43,8 @@ impl LatePolicy {
         by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY)))
     }
 
-    /// Returns how late a submission is that came at this moment, of somebody who has more time than the others, or
-    /// not. Nothing where it came in time, or where the assignment says nothing of late ones.
+    /// Returns the delay of a submission that arrived at this moment, with the student's own due date if there is one.
+    /// There is none for a submission in time, or if the assignment has no rule for late ones.
     pub(crate) fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
@@ -61,8 +61,8 @@ impl LatePolicy {
 }
 
 impl Lateness {
-    /// Returns how late a submission came, by its row with `created_at`, the assignment's `settings` and its owner's
-    /// own due date, `own_due`.
+    /// Returns the delay of a submission, by its row with `created_at`, the assignment's `settings` and its owner's own
+    /// due date, `own_due`.
     pub(crate) fn from_row(row: &Row) -> Result<Option<Self>, DbError> {
         let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
         Ok(policy.late(row.maybe_int("own_due")?, row.int("created_at")?))

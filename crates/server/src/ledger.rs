@@ -26,7 +26,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     Ok(completion)
 }
 
-/// Says that a try failed; after the last one the judge error is written.
+/// Reports that a try failed; after the last one the judge error is written.
 ///
 /// # Errors
 /// An error of the database.
@@ -48,13 +48,13 @@ pub async fn fail(
     } else {
         note(transaction, &row, "failed try", fault).await?;
     }
-    // Last, as when a job is finished: anybody who holds a worker's row waits for no job.
+    // The worker's row is locked last, as when a job is finished: its holder waits for no job.
     health::note_failure(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
-/// Looks for silent workers, and writes the judge errors of jobs that were tried too often. In a transaction of its
-/// own: it locks jobs of others, and with these it must not wait for anything that their workers hold.
+/// Finds silent workers, and writes the judge errors of jobs that were tried too often. In a transaction of its own: it
+/// locks jobs of other workers, and must not wait then for anything that their workers hold.
 ///
 /// # Errors
 /// An error of the database.
@@ -115,7 +115,8 @@ async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text:
     Ok(())
 }
 
-/// Notes that a worker came too late: it changes nothing, and is counted. A job that it made up is not even that.
+/// Notes that a worker was too late: its message changes nothing, and is counted. A message about an invented job is
+/// not even counted.
 async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
@@ -141,7 +142,7 @@ async fn bury(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str
     note(transaction, &row, "buried", fault).await
 }
 
-/// Writes a result and, unless it belongs to a regrade that nobody has decided on, the grade.
+/// Writes a result and, unless it belongs to an undecided regrade, the grade.
 async fn write_result(
     transaction: &mut Transaction,
     job: i64,
@@ -189,13 +190,13 @@ async fn write_result(
             .await?;
     }
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
-    // A grader that failed takes nobody's grade away.
+    // A grader that failed removes no grade.
     if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
         let reason = if counted.is_some() { "graded again" } else { "graded" };
         let change = GradeChange { submission, result, by: about.asked_by, campaign: None, reason };
         set_grade(transaction, &change).await?;
     }
-    // Judge errors are told of by those who bury.
+    // Judge errors are reported where jobs are buried.
     if outcome.code == JUDGE_ERROR {
         return Ok(about);
     }
@@ -216,9 +217,9 @@ pub struct GradeChange<'a> {
     pub submission: i64,
     /// The result that counts from now on.
     pub result: i64,
-    /// The one who wants it; nobody when it is the first.
+    /// The person who wanted it; `None` for the first grading.
     pub by: Option<i64>,
-    /// The regrade that it comes from.
+    /// The regrade to which it belongs.
     pub campaign: Option<i64>,
     /// The reason, as students read it.
     pub reason: &'a str,

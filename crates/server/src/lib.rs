@@ -1,5 +1,5 @@
 //! The service: a course's grading server that loses nothing, on SQLite out of the box and on PostgreSQL with any
-//! number of workers. docs/server/internals.md tells how it works.
+//! number of workers. docs/server/internals.md describes how it works.
 
 pub mod calendar;
 pub mod cli;

@@ -1,18 +1,18 @@
-//! Serving: connections are taken until the server is to end, and what was asked is answered then. The proxy that
-//! docs/server/operation.md asks for limits their number, slow heads and slow readers.
+//! Serves connections until the server stops, and answers the requests that arrived. The proxy that
+//! docs/server/operation.md requires limits their number, slow heads and slow readers.
 use axum::Router;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{io, net::SocketAddr, time::Duration};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 
-/// How long connections may go on when the server is to end.
+/// The time that connections get when the server stops.
 const GRACE: Duration = Duration::from_secs(20);
 
-/// Serves until `stop` is cancelled and what was asked is answered.
+/// Serves until `stop` is canceled and the requests that arrived are answered.
 ///
 /// # Errors
-/// When connections can no longer be taken.
+/// When connections can no longer be accepted.
 pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToken) -> io::Result<()> {
     // Each connection may need a file besides: as many as the kernel lets this process have.
     let maximum = getrlimit(Resource::Nofile).maximum;

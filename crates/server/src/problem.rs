@@ -1,9 +1,9 @@
-//! Problems, as those who asked are told: what went wrong, and how to mend it (RFC 9457, problem+json).
+//! Problems, as clients get them: what went wrong, and how to mend it (RFC 9457, problem+json).
 use crate::{db::DbError, store::StoreError};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The reason why a request was refused.
+/// The reason why a request was rejected.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Problem {
     /// A name that programs may go by.
@@ -22,8 +22,8 @@ pub struct Problem {
     pub wait: Option<u64>,
 }
 
-/// The reason why a request is refused: the status, a name for programs, words, what is wrong, and what to do about it.
-/// A detail or a remedy that the caller gives is an argument.
+/// The reason why a request is rejected: the status, a name for programs, words, what is wrong, and what to do. A
+/// detail or a remedy that the caller gives is an argument.
 macro_rules! problems {
     ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*): $status:literal, $kind:literal, $title:literal,
         $detail:expr, $remedy:expr;)*) => {
@@ -44,7 +44,7 @@ macro_rules! problems {
 }
 
 problems! {
-    /// Nobody has said who asks.
+    /// The request is not signed in.
     not_signed_in(): 401, "not-signed-in", "Not signed in",
         "this needs a sign-in",
         "sign in, or send a token: Authorization: Bearer fso_...";
@@ -76,7 +76,7 @@ problems! {
     refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
-    /// A learning platform did not do what it was asked.
+    /// A learning platform did not fulfill a request.
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,
         "try again later; if it happens again, tell the server's administrator";
@@ -129,7 +129,7 @@ problems! {
         detail,
         "ask the course's staff: the server's administrator can give more room, or have old uploads removed; \
                       nothing was stored";
-    /// The body came too slowly.
+    /// The body arrived too slowly.
     too_slow(): 408, "too-slow", "Too slow",
         "the rest of the request did not arrive in time",
         "send it again";
@@ -147,10 +147,10 @@ problems! {
         "try again, and tell the administrator: the log says more";
 }
 
-/// Refuses where something does not hold.
+/// Returns an error unless a condition holds.
 ///
 /// # Errors
-/// The words about it.
+/// `otherwise`.
 pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
     if holds { Ok(()) } else { Err(otherwise) }
 }

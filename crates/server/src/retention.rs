@@ -1,6 +1,6 @@
-//! How long uploads and reports are kept. Grades and their history stay for ever; bytes that nothing names any more go
-//! away. All of it goes in batches: memory is the same for ten submissions and for a million, and nobody waits for
-//! long.
+//! The time for which uploads and reports are kept. Grades and their history stay forever; bytes that nothing names are
+//! removed. All of it is done in batches: memory is the same for ten submissions and for a million, and no request
+//! waits for long.
 use crate::{
     db::{Database, DbError, Transaction},
     queue::millis,
@@ -19,7 +19,7 @@ const BATCH: i64 = 500;
 /// The reason why nothing was given up, or not all.
 #[derive(Debug, Error)]
 pub enum RetentionError {
-    /// The database says so.
+    /// The database reported an error.
     #[error(transparent)]
     Database(#[from] DbError),
     /// The store does.
@@ -36,11 +36,11 @@ pub struct GivenUp {
     pub artifacts: usize,
 }
 
-/// Gives up uploads and reports of submissions that are older than `keep`, where that is said, and artifacts older than
+/// Removes uploads and reports of submissions that are older than `keep`, if it is set, and artifacts older than
 /// `least` that nothing names. Submissions that are being graded or regraded stay.
 ///
 /// # Errors
-/// An error of database or store; the rest is given up the next time.
+/// An error of database or store; the rest is removed the next time.
 pub async fn give_up(
     database: &Database,
     store: &Store,
@@ -94,7 +94,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     Ok(submissions)
 }
 
-/// Returns those of these digests that the database names.
+/// Returns which of these digests the database names.
 async fn named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
     let suites = suites(&mut transaction).await?;

@@ -1,5 +1,5 @@
-//! Texts of a certain form, as the API's description names them: clients that keep to these are not refused for them.
-//! The checks, and their words for people, stand where they are used.
+//! Texts of a certain form, as the API's description names them: clients that keep to these are not rejected for them.
+//! The checks, and their words for people, are where they are used.
 use utoipa::{
     PartialSchema, ToSchema,
     openapi::{
@@ -31,7 +31,7 @@ macro_rules! texts {
 }
 
 texts! {
-    /// A name that stands in addresses.
+    /// A name that is used in addresses.
     Slug, r"^[a-z0-9][a-z0-9._-]*$", 60, "physics";
     /// A name that people gave to something, without invisible characters and spaces at its ends.
     Title, "^[^\\s\\x00-\\x1f\\x7f-\\x9f\\xad\\u115f\\u1160\\u180e\
@@ -46,7 +46,7 @@ texts! {
     FileName, r"^[A-Za-z0-9_][A-Za-z0-9._-]*$", 100, "FOSSSim";
     /// A word of another system's, without control characters.
     Word, r"^[^\x00-\x1f\x7f-\x9f]+$", 255, "10000000000001";
-    /// An address that is asked by HTTPS.
+    /// An address that is called by HTTPS.
     HttpsUrl, r"^https://[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?(/[A-Za-z0-9._~/-]*)?$",
         2000, "https://lms.example.org/mod/lti/auth.php";
     /// A host, with a port where it is not 443.

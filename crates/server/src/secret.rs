@@ -1,9 +1,9 @@
-//! Random words that nobody can guess.
+//! Random words that cannot be guessed.
 
 /// Returns 128 random bits in hexadecimal.
 ///
 /// # Panics
-/// When the system has no random numbers, without which no secret is one.
+/// When the system has no random numbers, without which there are no secrets.
 pub fn random_hex() -> String {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).expect("random numbers from the system");

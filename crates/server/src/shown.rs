@@ -27,18 +27,18 @@ pub struct ShownGrade {
 /// The texts that the database keeps about the scenes of an outcome.
 #[derive(Debug, Default)]
 pub struct KeptTexts {
-    /// The part that students see while groups are withheld; empty where its suite hides nothing.
+    /// The part that students see while groups are withheld; empty if its suite hides nothing.
     pub shown: String,
-    /// The scenes that are not accepted, a line each with the verdict in short; nothing where they are not known.
+    /// The scenes that are not accepted, a line each with the verdict in short; `None` if they are not known.
     pub failed: Option<String>,
-    /// The grade's [`GradeParts`]; nothing where they are not known.
+    /// The grade's [`GradeParts`]; `None` if they are not known.
     pub parts: Option<String>,
 }
 
 /// The parts of a grade that tables of a class have a column for.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct GradeParts {
-    /// Groups, each with its points; none where the grader failed.
+    /// Groups, each with its points; `None` if the grader failed.
     pub groups: Vec<(String, Option<f64>)>,
     /// Likely mistakes, in sentences.
     pub mistakes: Vec<String>,
@@ -67,14 +67,14 @@ fn read(grade: impl io::Read) -> Option<GradeFile> {
     serde_json::from_reader(io::BufReader::new(grade)).ok()
 }
 
-/// Returns the scenes that are not accepted, hidden ones, too.
+/// Returns the scenes that are not accepted, including hidden ones.
 fn failed(report: &GradeFile) -> String {
     let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
     // A name with a line break would make two lines.
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
 }
 
-/// Returns the parts of a grade, those of hidden groups, too.
+/// Returns the parts of a grade, including those of hidden groups.
 fn parts(report: &GradeFile) -> String {
     let groups = report.grades.iter().flat_map(|grade| &grade.groups);
     let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
@@ -100,7 +100,7 @@ fn nothing() -> ShownGrade {
     }
 }
 
-/// Returns the rest of a `grade.json` without hidden groups; nothing where it hides none.
+/// Returns the rest of a `grade.json` without hidden groups; `None` if it hides none.
 fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
     let is_visible =
@@ -121,7 +121,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     Some(ShownGrade {
         verdict: worst.verdict.clone(),
-        // A code has letters: of what was not run nothing is known.
+        // A code has letters: nothing is known of groups that were not run.
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
         points: sum(|group| group.points),
         max_points: sum(|group| group.max_points),
@@ -130,7 +130,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
 }
 
 impl ShownGrade {
-    /// Reads the grade in a text of the database; nothing where nothing is withheld.
+    /// Reads the shown grade in a text of the database; `None` if nothing is withheld.
     pub fn read(text: &str) -> Option<Self> {
         match text {
             "" => None,
@@ -148,7 +148,7 @@ impl ShownGrade {
         (self.code, self.points)
     }
 
-    /// Makes an outcome what is shown of it. Digests, sizes and times of what is withheld would tell when it changes.
+    /// Reduces an outcome to its shown part. Digests, sizes and times of what is withheld would reveal when it changes.
     pub fn cover(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
@@ -157,7 +157,7 @@ impl ShownGrade {
     }
 }
 
-/// Returns the full hour before a moment: a grade's own would tell how long hidden groups took.
+/// Returns the full hour before a moment: a grade's exact time would reveal how long hidden groups took.
 pub fn hour(milliseconds: i64) -> i64 {
     milliseconds - milliseconds.rem_euclid(3_600_000)
 }

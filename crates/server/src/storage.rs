@@ -1,8 +1,8 @@
-//! Whether the server can still write, and whether it has room for more.
+//! Checks whether the server can still write, and whether it has room for more.
 //!
-//! A database that answers reads may be unable to write: a full disk, a folder that became read-only. So
-//! [`Storage::prove`] writes, to the database and to the store, and [`Storage::ensure_room`] refuses uploads before the
-//! disk is full, so that what was accepted can still be graded.
+//! A database that answers reads may be unable to write: a full disk, a folder that became read-only. Therefore
+//! [`Storage::prove`] writes to the database and to the store, and [`Storage::ensure_room`] rejects uploads before the
+//! disk is full, so that accepted ones can still be graded.
 use crate::{
     db::{self, Database, DbError},
     problem::Problem,
@@ -16,27 +16,27 @@ use std::{
 };
 use tokio::sync::Mutex;
 
-/// A proof counts so long: monitors that ask more often than this cost one write.
+/// The time for which a proof counts: more frequent requests of monitors cost one write.
 const PROOF_COUNTS: Duration = Duration::from_secs(2);
 
 /// The longest time that a proof may take: probes wait for five seconds.
 const PROOF_TIME: Duration = Duration::from_secs(3);
 
-/// Database, store and disk, as far as writing to them goes.
+/// Database, store and disk, for writing to them.
 #[derive(Debug)]
 pub struct Storage {
     database: Database,
     store: Store,
     /// On the disk that uploads come to.
     incoming: PathBuf,
-    /// Uploads are refused when fewer bytes are free on it.
+    /// Uploads are rejected when fewer bytes are free on it.
     low_water: u64,
-    /// When something was last proved, and what came of it: what can't be done.
+    /// The time of the last proof, and its result: what can't be done.
     last: Mutex<Option<(Instant, Option<&'static str>)>>,
 }
 
 impl Storage {
-    /// Creates storage that refuses uploads below this many free bytes.
+    /// Creates storage that rejects uploads below this many free bytes.
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }
@@ -91,7 +91,7 @@ impl Storage {
         transaction.commit().await
     }
 
-    /// Returns the free bytes of the data folder's disk, and its size, where it says so.
+    /// Returns the free bytes of the data folder's disk, and its size, if the disk reports them.
     pub fn disk(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))
@@ -102,7 +102,7 @@ impl Storage {
     /// # Errors
     /// When less than the low-water mark is free: 507. Nothing was written.
     pub fn ensure_room(&self) -> Result<(), Problem> {
-        // A disk that does not say how full it is can't be refused by.
+        // A disk that does not report its free space rejects nothing.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {
             tracing::error!(low_water = self.low_water, "uploads are rejected: the disk is nearly full");
             return Err(Problem::no_room());

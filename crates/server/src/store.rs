@@ -1,8 +1,8 @@
-//! The store of artifacts: submissions, reports, suites. Each lies under the SHA-256 of its bytes, is written once and
-//! never changed; anybody who reads one gets the bytes that its name promises, or an error. A folder by default; a
-//! bucket of S3, or of what speaks like it, for several servers.
+//! The store of artifacts: submissions, reports, suites. Each is stored under the SHA-256 of its bytes, is written once
+//! and never changed; a reader gets the bytes that its name promises, or an error. The store is a folder by default;
+//! for several servers it is a bucket of S3 or a compatible service.
 //!
-//! An artifact is safely stored before the database hears of it, so that what the database names is always there.
+//! An artifact is safely stored before the database names it, so that a named artifact is always there.
 mod read;
 mod sweep;
 
@@ -26,15 +26,15 @@ use thiserror::Error;
 use tokio_util::io::ReaderStream;
 use utoipa::ToSchema;
 
-/// How much is read at a time.
+/// The number of bytes that are read at a time.
 const CHUNK: usize = 256 * 1024;
 
-/// Where artifacts lie, and where those lie that are about to be given up.
+/// The place of artifacts, and the place of those that are about to be removed.
 const KEPT: &str = "sha256";
 const ASIDE: &str = "aside";
 
-/// An artifact that is stored once more is written anew when it is older than this: anybody who gives up what nobody
-/// names looks at its age, and must not take what somebody is about to name.
+/// An artifact that is stored once more is written anew if it is older than this: the removal of unnamed artifacts
+/// checks their age, and must not take one that is about to be named.
 const FRESH: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.
@@ -47,7 +47,7 @@ pub struct Digest(String);
 pub struct Artifact {
     /// The digest of its bytes.
     pub digest: Digest,
-    /// How many bytes these are.
+    /// The number of bytes.
     #[schema(maximum = 9_007_199_254_740_991_i64)]
     pub size: u64,
 }
@@ -58,7 +58,7 @@ pub enum StoreError {
     /// There is none of this digest.
     #[error("the store has no artifact {0}")]
     Missing(Digest),
-    /// The bytes are not those that were stored: a damaged disk, or somebody's hand.
+    /// The bytes are not those that were stored: the disk is damaged, or the file was changed.
     #[error("the artifact {0} is damaged in the store")]
     Damaged(Digest),
     /// The store can't be used: no space, no permission, not reachable.
@@ -94,7 +94,7 @@ impl Digest {
         &self.0[..12]
     }
 
-    /// Returns where it lies, in one of the two places.
+    /// Returns the key of an artifact, in one of the two places.
     fn key(&self, place: &str) -> Key {
         Key::from(format!("{place}/{}/{}", &self.0[..2], &self.0[2..]))
     }
@@ -146,10 +146,11 @@ impl Store {
         Ok(Self { objects: Arc::new(objects), folder: Some(folder.to_owned()) })
     }
 
-    /// Returns a bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, reached as the variables `AWS_...` say.
+    /// Returns a bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, with the settings of the variables
+    /// `AWS_...`.
     ///
     /// # Errors
-    /// When the address is none, or this program was built without buckets.
+    /// When the address is not valid, or this program was built without buckets.
     pub fn bucket(address: &str) -> Result<Self, StoreError> {
         let place = address.strip_prefix("s3://").unwrap_or_default();
         let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
@@ -161,7 +162,7 @@ impl Store {
 
     #[cfg(feature = "s3")]
     fn s3(bucket: &str, prefix: &str) -> Result<Self, StoreError> {
-        // The second time it is there already, and is told so.
+        // The second time it exists already, and the store reports that.
         drop(rustls::crypto::ring::default_provider().install_default());
         let objects = object_store::aws::AmazonS3Builder::from_env().with_bucket_name(bucket).build()?;
         let objects = object_store::prefix::PrefixStore::new(objects, prefix);
@@ -217,12 +218,12 @@ impl Store {
         Ok(self.age(&digest.key(KEPT)).await?.is_some() || self.age(&digest.key(ASIDE)).await?.is_some())
     }
 
-    /// Returns whether there is one that nobody will give up soon.
+    /// Returns whether there is an artifact that will not be removed soon.
     async fn find_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT)).await?.is_some_and(|age| age < FRESH))
     }
 
-    /// Returns how long ago an object was written; nothing when there is none.
+    /// Returns the age of an object; `None` if there is none.
     async fn age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
         match self.objects.head(key).await {
             Ok(meta) => Ok(Some(age(&meta))),

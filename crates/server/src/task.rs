@@ -6,7 +6,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// One grading, complete: anybody who has this and the artifacts that it names can do it again.
+/// One grading, complete: with this and the artifacts that it names it can be repeated.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
     /// The upload.
@@ -16,12 +16,12 @@ pub struct Task {
     /// The rule books, when the suite is not to decide: `parity`, `fair` or `both`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rules: Option<String>,
-    /// How much the reports tell, when the suite is not to decide: `none`, `where`, `what` or `full`.
+    /// The detail that the reports show, unless the suite decides: `none`, `where`, `what` or `full`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<String>,
     /// The program's name within a folder of sources.
     pub program: String,
-    /// After this many seconds the grading is stopped, and what it has so far counts.
+    /// The seconds after which the grading is stopped; its results so far count.
     pub seconds: u64,
 }
 
@@ -46,7 +46,7 @@ macro_rules! forms {
         pub enum Form { $($(#[$about])+ $form,)+ }
 
         impl Form {
-            /// All of them.
+            /// All submissions.
             pub const ALL: [Self; [$(Self::$form),+].len()] = [$(Self::$form),+];
 
             /// Returns the name in tables and messages.
@@ -65,7 +65,7 @@ macro_rules! forms {
 forms! {
     /// A program, ready to run.
     Program "program" "a program for Linux";
-    /// An archive of sources that the suite says how to build.
+    /// An archive of sources, for which the suite has the build.
     Sources "sources" "an archive of sources";
     /// An archive of traces, one for each scene.
     Traces "traces" "an archive of traces";
@@ -82,7 +82,7 @@ impl Form {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
-    /// One that comes with the program.
+    /// A suite that comes with the program.
     Named(String),
     /// An archive with a `suite.toml` and its scenes.
     Archive(Digest),
@@ -98,13 +98,13 @@ impl Suite {
     }
 }
 
-/// The result of a grading: as the grader tells it, as a worker brings it and as the service shows it.
+/// The result of a grading: the grader makes it, a worker reports it and the service shows it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome {
     /// The verdict in words.
     #[schema(max_length = 200)]
     pub verdict: String,
-    /// The verdict in short: AC, WA, ...; JE is the grader's fault and nobody's zero.
+    /// The verdict in short: AC, WA, ...; JE is the grader's fault and no zero.
     #[schema(value_type = Code)]
     pub code: String,
     /// Points, digit for digit as the grader wrote them; none after a judge error.
@@ -128,21 +128,21 @@ pub struct Outcome {
     /// Reports and logs; empty in lists.
     pub files: Vec<OutputFile>,
     /// The part that students see while groups are withheld, as [`ShownGrade`](crate::shown::ShownGrade) keeps it;
-    /// nothing while nobody has looked.
+    /// `None` until it was computed.
     #[serde(skip)]
     pub shown: Option<String>,
-    /// The scenes that are not accepted, a line each with the verdict in short; nothing while nobody has looked.
+    /// The scenes that are not accepted, a line each with the verdict in short; `None` until they were computed.
     #[serde(skip)]
     pub failed: Option<String>,
-    /// Points of groups and likely mistakes, as [`GradeParts`](crate::shown::GradeParts); nothing while nobody has
-    /// looked.
+    /// Points of groups and likely mistakes, as [`GradeParts`](crate::shown::GradeParts); `None` until they were
+    /// computed.
     #[serde(skip)]
     pub parts: Option<String>,
 }
 
 impl Outcome {
-    /// Returns the outcome of a job that was tried too often: our fault, and nobody's zero. Why is staff's to read, in
-    /// the job.
+    /// Returns the outcome of a job that was tried too often: the service's fault, and no zero. Only staff reads the
+    /// reason, in the job.
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
@@ -163,7 +163,7 @@ pub fn rounded(number: &str) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The verdict that is nobody's zero.
+/// The verdict that is no zero for the student.
 pub const JUDGE_ERROR: &str = "JE";
 
 /// A report or log.

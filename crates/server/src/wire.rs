@@ -12,7 +12,7 @@ use utoipa::ToSchema;
 pub struct ClaimedJob {
     /// The lease to show from now on.
     pub lease: Lease,
-    /// How often to renew it, in milliseconds.
+    /// The time between two renewals, in milliseconds.
     pub renew_every: u64,
     /// The task.
     pub task: Task,
@@ -33,10 +33,10 @@ pub(crate) struct SignOfLife {
     pub(crate) version: String,
 }
 
-/// The rules that a worker is to know.
+/// The rules for a worker.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub struct Manners {
-    /// How often to say that it is alive, in milliseconds.
+    /// The time between two reports that the worker is alive, in milliseconds.
     pub(crate) tick_every: u64,
     /// The server's version.
     #[serde(default)]
@@ -46,7 +46,7 @@ pub struct Manners {
 /// Whether the lease still holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct LeaseAnswer {
-    /// If not, somebody else has the job and nothing was changed.
+    /// If not, another worker has the job and nothing was changed.
     pub held: bool,
 }
 
@@ -56,12 +56,12 @@ impl From<bool> for LeaseAnswer {
     }
 }
 
-/// A lease that is to go on.
+/// A lease to extend.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct Renewal {
     #[serde(flatten)]
     pub(crate) lease: Lease,
-    /// How far the grading is, if the worker knows.
+    /// The progress of the grading, if the worker knows it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) progress: Option<Progress>,
 }

@@ -10,8 +10,8 @@ use fosssim_num::vector::at;
 const MOST_STEPS: usize = 6;
 
 /// Returns scenes to begin with, in the order in which they are tried: each of these wrong steps alone, then the first
-/// one with the step before it, then the whole run up to it. `trace` is what the program wrote on the scene; steps
-/// count from 1 and ascend. Nothing of what only a display uses is left.
+/// one with the step before it, then the whole run up to it. `trace` is the program's trace of the scene; steps count
+/// from 1 and ascend. Parts that only a display uses are removed.
 #[must_use]
 pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<Scene> {
     let Some(&first) = wrong.first() else { return Vec::new() };
@@ -27,7 +27,7 @@ pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<Scene> {
     alone.chain(with_before).chain(whole).collect()
 }
 
-/// Returns the state before each step up to this one, as far as the trace has them.
+/// Returns the state before each step up to this one, if the trace has them.
 fn states(scene: &Scene, trace: &[u8], last: u32) -> Vec<State> {
     let layout = Layout::for_scene(scene);
     let (mut reader, mut frame) = (Lenient::from_slice(trace, layout), LenientFrame::default());

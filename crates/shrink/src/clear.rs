@@ -1,4 +1,4 @@
-//! Whether a scene has room: nothing in its steps hangs on round-off.
+//! Checks that a scene has a margin: nothing in its steps depends on round-off.
 use fosssim_model::{
     scene::Scene,
     sim::{Detection, Observer, Pair, RootSearch, Simulation},
@@ -8,14 +8,14 @@ use fosssim_model::{
 const SHIFT: f64 = 1e-9;
 /// The greatest factor by which such a change may grow.
 const GROWTH: f64 = 1e4;
-/// How often another change is tried.
+/// The number of tries with another change.
 const TRIES: u64 = 2;
 
 /// The reference's decision about each pair, in the order of its detections.
 type PairDecisions = Vec<(Pair, bool)>;
 
-/// Returns the reference's decisions on a scene; nothing where it has no result, or where other round-off may lead to
-/// another one.
+/// Returns the reference's decisions on a scene; `None` if it has no result, or if other round-off may lead to another
+/// result.
 pub(crate) fn clear_decisions(scene: &Scene) -> Option<PairDecisions> {
     let (decisions, end) = run(scene)?;
     let is_same = |seed: u64| {

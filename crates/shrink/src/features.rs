@@ -1,4 +1,4 @@
-//! Plainer features in place of those of a scene.
+//! Simpler features that replace those of a scene.
 use fosssim_model::{
     assignments::Assignment,
     scene::{Collision, Integrator, Scene},

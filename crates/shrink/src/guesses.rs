@@ -1,4 +1,4 @@
-//! Scenes of the same parts with other numbers: small round ones, drawn from a fixed sequence.
+//! Scenes of the same parts with other numbers: small round numbers, drawn from a fixed sequence.
 use crate::{
     clear::{next, run},
     numbers::drawn,
@@ -10,8 +10,8 @@ use fosssim_model::scene::Scene;
 const DRAWN: u64 = 1_500;
 const TRIED: usize = 24;
 
-/// Draws scenes that are smaller than this one and like it, the smallest first. Where the pairs that collide are the
-/// same, it comes before those where other ones do.
+/// Draws scenes that are smaller than this one and similar to it, the smallest first. Scenes with the same colliding
+/// pairs come before others.
 pub(crate) fn guesses(scene: &Scene, size: SceneSize, is_like: impl Fn(&Scene) -> bool) -> Vec<Scene> {
     let decisions = run(scene).map(|(decisions, _)| decisions);
     let mut found: Vec<(bool, SceneSize, Scene)> = (1..=DRAWN)

@@ -1,4 +1,4 @@
-//! The numbers of a scene, and rounder ones in their place.
+//! The numbers of a scene, and rounder numbers to replace them.
 use crate::beginnings::set_steps;
 use fosssim_model::scene::{Collision, Force, Scene};
 
@@ -22,7 +22,7 @@ pub(crate) enum SceneNumber {
 }
 
 impl SceneNumber {
-    /// Returns the value that nobody has to think about.
+    /// Returns the simplest value, which needs no thought.
     pub(crate) const fn plain(self) -> f64 {
         match self {
             Self::Place | Self::Velocity | Self::Direction | Self::Extra => 0.0,
@@ -185,7 +185,7 @@ fn scaled(scene: &Scene, length: f64, time: f64) -> Scene {
     scene
 }
 
-/// Returns the scene with rounder numbers in place of its `index`-th, the roundest first; none behind the last one.
+/// Returns the scene with rounder numbers for its `index`-th, the roundest first; none after the last one.
 pub(crate) fn rounder(scene: &Scene, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
     let (quantity, value) = numbers(&mut copy).into_iter().nth(index).map(|(quantity, value)| (quantity, *value))?;

@@ -1,4 +1,4 @@
-//! Removes parts of a scene with all that hangs on them: edges with their ends, forces with their bodies.
+//! Removes parts of a scene with all that depends on them: edges with their ends, forces with their bodies.
 use fosssim_model::scene::{Force, Scene};
 use std::ops::Range;
 

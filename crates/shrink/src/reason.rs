@@ -12,7 +12,7 @@ const PLAIN: f64 = 1e-6;
 /// The trace and the end of a program's run on a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Observation {
-    /// The trace, as far as it was written.
+    /// The trace, up to the place at which it ends.
     pub trace: Vec<u8>,
     /// The way the program ended.
     pub ended: RunEnd,
@@ -42,8 +42,7 @@ pub enum WrongReason {
 }
 
 impl WrongReason {
-    /// Returns the reason why a program is wrong on a scene; nothing where it is right, or where only round-off
-    /// decides that.
+    /// Returns the reason why a program is wrong on a scene; `None` if it is right, or if only round-off decides that.
     #[must_use]
     pub fn first(scene: &Scene, seen: &Observation) -> Option<Self> {
         if FailureKind::from_end(&seen.ended).is_some() {
@@ -82,7 +81,8 @@ impl WrongReason {
         }
     }
 
-    /// Returns whether it holds, and is what the scene alone says first: other mistakes would not do the same there.
+    /// Returns whether it holds, and is the first thing that the scene alone shows: other mistakes would not have the
+    /// same effect there.
     #[must_use]
     pub fn leads(&self, scene: &Scene, seen: &Observation) -> bool {
         let Self::Mistake(mistake) = self else { return self.holds(scene, seen) };
@@ -91,8 +91,8 @@ impl WrongReason {
             && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.said() == mistake.said())
     }
 
-    /// Returns whether the reference with the named mistake is plainly wrong on a scene; nothing where no mistake of
-    /// the catalogue is named.
+    /// Returns whether the reference with the named mistake is plainly wrong on a scene; `None` if no mistake of the
+    /// catalogue is named.
     pub(crate) fn shows(&self, scene: &Scene) -> Option<bool> {
         let Self::Mistake(mistake) = self else { return None };
         let keys = std::iter::once(&mistake.key).chain(&mistake.same_as);
@@ -117,7 +117,7 @@ struct FirstFinding {
     is_plain: bool,
 }
 
-/// Returns what is wrong with a trace, unless round-off may decide that.
+/// Returns the faults of a trace, unless round-off may decide them.
 fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let outcome = judge(scene, trace, &options, &mut ());

@@ -22,7 +22,7 @@ const MOST_PASSES: u32 = 8;
 pub struct SmallScene {
     /// The scene.
     pub scene: Scene,
-    /// How often the program was run.
+    /// The number of runs of the program.
     pub runs: u32,
     /// Whether no single attempt makes it smaller; else the search was stopped.
     pub is_minimal: bool,
@@ -45,10 +45,10 @@ pub struct Reducer<'a> {
 }
 
 impl<'a> Reducer<'a> {
-    /// The runs that a search makes at most, unless another number is asked for.
+    /// The most runs that a search makes, unless another number is set.
     pub const MOST_RUNS: u32 = 2_000;
 
-    /// Creates a search that asks `holds` about each attempt, of a program of this assignment.
+    /// Creates a search that calls `holds` for each attempt, of a program of this assignment.
     #[must_use]
     pub fn new(reason: &'a WrongReason, assignment: Assignment, holds: &'a Holds<'a>) -> Self {
         Self { reason, assignment, holds, is_over: &|| false, jobs: 1, most_runs: Self::MOST_RUNS }
@@ -60,7 +60,7 @@ impl<'a> Reducer<'a> {
         Self { is_over, ..self }
     }
 
-    /// Asks about this number of attempts at a time. The result is the same.
+    /// Sets the number of attempts at a time. The result is the same.
     #[must_use]
     pub fn with_jobs(self, jobs: usize) -> Self {
         Self { jobs: jobs.max(1), ..self }
@@ -72,8 +72,8 @@ impl<'a> Reducer<'a> {
         Self { most_runs, ..self }
     }
 
-    /// Begins with the first of these scenes on which the program is wrong for the reason, and makes it smaller;
-    /// nothing where it is so on none. `progress` hears the size of each smaller scene.
+    /// Begins with the first of these scenes on which the program is wrong for the reason, and makes it smaller; `None`
+    /// if there is no such scene. `progress` is called with the size of each smaller scene.
     #[must_use]
     pub fn reduce(self, beginnings: Vec<Scene>, progress: &mut dyn FnMut(&SceneSize)) -> Option<SmallScene> {
         let mut runs = 0;
@@ -107,7 +107,7 @@ struct Search<'a, 'p> {
 /// Properties of a scene that smaller ones keep.
 #[derive(Clone, Copy, Default)]
 struct SceneTraits {
-    /// Nothing hangs on round-off.
+    /// No decision depends on round-off.
     is_clear: bool,
     /// The reference with the named mistake is wrong on it.
     shows: bool,
@@ -144,12 +144,12 @@ impl<'a, 'p> Search<'a, 'p> {
         !self.is_stopped
     }
 
-    /// Removes halves of the parts, then quarters, down to single ones.
+    /// Removes halves of the parts, then quarters, down to single parts.
     fn remove(&mut self, kind: PartKind) {
         let mut length = kind.count(&self.best).div_ceil(2).max(1);
         loop {
             let count = kind.count(&self.best);
-            // From the end, so that what is left keeps its number as long as possible.
+            // From the end, so that the rest keeps its numbers as long as possible.
             let starts = (0..count).step_by(length).rev();
             // One at a time: a scene of thousands of bodies has as many parts, and each attempt is a copy.
             let best = self.best.clone();
@@ -164,14 +164,14 @@ impl<'a, 'p> Search<'a, 'p> {
         }
     }
 
-    /// Takes rounder numbers, one by one.
+    /// Tries rounder numbers, one by one.
     fn round(&mut self) {
         let mut index = 0;
         while let Some(candidates) = rounder(&self.best, index) {
             if self.is_stopped {
                 return;
             }
-            // Behind one that was taken there may be a rounder one still.
+            // After a number that was taken there may be a rounder one.
             if !self.take(candidates) {
                 index += 1;
             }
@@ -231,7 +231,7 @@ impl<'a, 'p> Search<'a, 'p> {
         SceneSize::from_scene(scene) < self.size && self.is_like(scene) && !self.refuted.contains(&scene::write(scene))
     }
 
-    /// Returns whether a scene has what smaller ones keep.
+    /// Returns whether a scene has the properties that smaller ones keep.
     fn is_like(&self, scene: &Scene) -> bool {
         oddities(scene, self.reducer.assignment).is_some_and(|count| count <= self.traits.oddities)
             && (!self.traits.is_clear || clear_decisions(scene).is_some())
@@ -239,7 +239,7 @@ impl<'a, 'p> Search<'a, 'p> {
     }
 }
 
-/// Counts the warnings about a scene, and what programs of the assignment do not know of it; nothing where it is not
+/// Counts the warnings about a scene, and its parts that programs of the assignment do not know; `None` if it is not
 /// sound.
 fn oddities(scene: &Scene, assignment: Assignment) -> Option<usize> {
     let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene)?;

@@ -1,8 +1,8 @@
-//! How large a scene is: what its reader has to take in.
+//! The size of a scene: the amount that its reader has to take in.
 use crate::numbers::numbers;
 use fosssim_model::scene::{Collision, Integrator, Scene};
 
-/// The size of a scene. Of two scenes the one that is less by the first field that differs is the smaller one.
+/// The size of a scene. The first field that differs decides which of two scenes is smaller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SceneSize {
     /// Steps.

@@ -26,7 +26,7 @@ impl Student {
         self
     }
 
-    /// Returns the mistakes, which stand before all free places.
+    /// Returns the mistakes, which come before all free places.
     pub(super) fn mistakes(self) -> impl Iterator<Item = Mistake> {
         self.mistakes.into_iter().map_while(|mistake| mistake)
     }
@@ -42,7 +42,7 @@ impl Student {
         self.mistakes[0].is_none()
     }
 
-    /// Returns the mistake of these parts of the assignment, where many are told apart in one place; the first part
+    /// Returns the mistake of these parts of the assignment, if many are distinguished in one place; the first part
     /// that has one counts.
     pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
         areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))

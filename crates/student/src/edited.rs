@@ -1,4 +1,4 @@
-//! The slips of a student in the quantities of the program: what is added to a sum, what weighs a term, what is tested.
+//! The slips of a student in the quantities of the program: the parts of a sum, the weights of terms, the tests.
 use super::{
     Mistake, StepMistake,
     author::Student,
@@ -30,7 +30,7 @@ impl TermPart {
 }
 
 impl Student {
-    /// Returns the slips in a quantity, or in one of which it is a part.
+    /// Returns the slips in a quantity, or in one that it is part of.
     pub fn slips(self, term: Term) -> impl Iterator<Item = Slip> {
         self.edits().filter(move |edit| edit.term.covers(term)).map(|edit| edit.slip)
     }
@@ -49,14 +49,13 @@ impl Student {
 }
 
 impl World {
-    /// Returns the weight of a quantity that is a number, in this student's program: its slips, but for those of the
-    /// whole.
+    /// Returns the weight of a numeric quantity in this student's program: its slips, except those of the whole.
     pub fn weight(&self, term: Term, length: f64) -> f64 {
         let own = self.student.edits().filter(|edit| edit.term == term);
         own.map(|edit| self.factor(edit.slip, 0, length)).product()
     }
 
-    /// Returns the weight of what a particle gets of a quantity, with the slips of the whole.
+    /// Returns the weight of a particle's part of a quantity, with the slips of the whole.
     pub fn whole_weight(&self, term: Term, particle: usize, length: f64) -> f64 {
         self.student.slips(term).map(|slip| self.factor(slip, particle, length)).product()
     }
@@ -94,7 +93,7 @@ impl World {
                 Slip::OnlyFirst if particle > 0 => return,
                 Slip::OneEnd if role == 2 => return,
                 Slip::Missing => return,
-                // Of one statement for the whole force, the first part replaces what was there.
+                // With one statement for the whole force, the first part replaces the earlier value.
                 Slip::Assigned => is_assigned = term != Term::SpringDamping || edit.term == term,
                 Slip::SameSign if role > 0 => value = -value,
                 Slip::XOnly => value.y = 0.0,

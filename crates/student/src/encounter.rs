@@ -4,21 +4,21 @@ use fosssim_num::vector::Vec2;
 /// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
 #[derive(Clone, Copy)]
 pub struct MovingBody {
-    /// Where its center is at the start of the step.
+    /// The position of its center at the start of the step.
     pub start: Vec2,
-    /// How far it goes within the step.
+    /// The displacement within the step.
     pub displacement: Vec2,
     /// The body's radius.
     pub radius: f64,
 }
 
 impl MovingBody {
-    /// Returns where its center is at time `t`, a fraction of the step.
+    /// Returns the position of its center at time `t`, a fraction of the step.
     pub fn at(&self, t: f64) -> Vec2 {
         self.start + t * self.displacement
     }
 
-    /// Returns where its center is at the end of the step.
+    /// Returns the position of its center at the end of the step.
     pub fn end(&self) -> Vec2 {
         self.at(1.0)
     }

@@ -62,7 +62,7 @@ fn stops(world: &World, zone: &Zone) -> bool {
     half_plane || fixed || student.makes(Mistake::FailsafeAlwaysStops)
 }
 
-/// Returns the particles of a zone in the order in which a loop goes through them.
+/// Returns the particles of a zone in the order of the loop.
 fn particles(world: &World, zone: &Zone) -> Vec<usize> {
     match (zone.particles.first(), zone.particles.last()) {
         (Some(&first), Some(&last)) if world.student.makes(Mistake::FailsafeRange) => (first..=last).collect(),
@@ -91,11 +91,11 @@ struct RigidBody<'a> {
     q_start: &'a [f64],
     /// Center of mass at the start of the step.
     center: Vec2,
-    /// How far it moves within the step.
+    /// The displacement within the step.
     shift: Vec2,
     /// The zone's angular momentum about the center, times the step.
     momentum: f64,
-    /// How far the body turns within the step, radians.
+    /// The angle by which the body turns within the step, radians.
     angle: f64,
     /// The zone's moment of inertia.
     inertia: f64,

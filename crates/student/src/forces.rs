@@ -84,8 +84,8 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
-/// Returns the number that stands before a direction, of a student who takes its modulus, or a square as in the energy;
-/// `factor` is what is squared in it.
+/// Returns the factor before a direction, for a student who takes its modulus, or a square as in the energy; `factor`
+/// is the squared quantity.
 fn amended(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
         () if student.slips_by(term, Slip::Absolute) => value.abs(),

@@ -46,7 +46,7 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     Ok(a)
 }
 
-/// The second derivatives, as far as they have come.
+/// The second derivatives, summed so far.
 struct HessianSum<'a> {
     world: &'a World,
     size: usize,
@@ -57,7 +57,7 @@ struct HessianSum<'a> {
 }
 
 impl HessianSum<'_> {
-    /// Adds what a force has in the matrix of this turn.
+    /// Adds a force's part of the matrix of this turn.
     fn add_force(&mut self, force: &Force, x: &[f64], v: &[f64]) -> Result<(), StepFailure> {
         let world = self.world;
         match *force {
@@ -94,7 +94,7 @@ impl HessianSum<'_> {
         self.is_of_velocities == (is_of_velocities != is_other)
     }
 
-    /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it beside the diagonal.
+    /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it off the diagonal.
     fn add_pair(&mut self, term: Term, (a, b): (usize, usize), block: &Matrix2, length: f64) {
         let student = self.world.student;
         for (index, (row, column)) in [(a, a), (b, b), (a, b), (b, a)].into_iter().enumerate() {

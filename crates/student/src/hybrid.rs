@@ -10,7 +10,7 @@ use super::{
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ImpactZones];
 
-/// A number of rounds that no right program needs in any scene: some mistakes let the list of zones change for ever.
+/// A number of rounds that no right program needs in any scene: some mistakes let the list of zones change forever.
 const MOST_ROUNDS: u32 = 1000;
 
 /// A watched step is left when it has more zones than this, and than particles.

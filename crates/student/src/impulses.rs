@@ -84,7 +84,7 @@ pub fn apply(
     Ok(false)
 }
 
-/// Returns what a program that ends before its first round returns; `None` when it goes on.
+/// Returns the result of a program that ends before its first round; `None` if it continues.
 fn end_before_rounds(
     world: &World,
     q_start: &[f64],
@@ -113,7 +113,7 @@ fn end_before_rounds(
     Ok(ending)
 }
 
-/// Returns how many rounds this program allows itself.
+/// Returns the number of rounds that this program allows.
 fn limit(world: &World, max_iterations: i32) -> i32 {
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),

@@ -8,7 +8,7 @@ use super::{
     Slip, StepMistake, Term, author::Student, forces, hessians, objects::State, step_failure::StepFailure, world::World,
 };
 
-/// Newton's method is given up after this many iterations; the course's program would go on for ever.
+/// Newton's method is given up after this many iterations; the course's program would continue forever.
 const NEWTON_LIMIT: u32 = 100_000;
 
 /// And after this many with a mistake: such a program is tried in passing, and converges soon or hardly at all.

@@ -8,7 +8,7 @@ use super::{StepMistake, world::World};
 pub struct NearPairSearch<'a> {
     world: &'a World,
     h: f64,
-    /// The positions that are looked at.
+    /// The positions that are checked.
     x: Vec<f64>,
     /// The place of each particle in the order in which they begin on x; only of a student who needs it.
     ranks: Vec<usize>,
@@ -41,7 +41,7 @@ impl<'a> NearPairSearch<'a> {
         Self { world, h, x, ranks }
     }
 
-    /// Returns how often this pair is found that is near.
+    /// Returns how many times this near pair is found.
     pub fn times(&self, kind: PairKind, one: usize, other: usize) -> u32 {
         if !self.is_found(kind, one, other) {
             return 0;
@@ -107,7 +107,7 @@ impl<'a> NearPairSearch<'a> {
         [center - Vec2::new(side, side), center + Vec2::new(side, side)]
     }
 
-    /// Returns the boxes by which an edge is looked for.
+    /// Returns the boxes by which an edge is searched.
     fn edge(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;

@@ -11,7 +11,7 @@ pub struct State {
     pub v: Vec<f64>,
 }
 
-/// A particle and what it may collide with.
+/// A particle and a possible partner of its collision.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pair {
     /// The particle's index.
@@ -58,6 +58,6 @@ pub struct Contact {
 pub struct Zone {
     /// The particles' indices.
     pub particles: BTreeSet<usize>,
-    /// Whether one of them hits a half-plane.
+    /// Whether a particle hits a half-plane.
     pub half_plane: bool,
 }

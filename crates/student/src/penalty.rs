@@ -16,7 +16,7 @@ pub struct PenaltyLayer {
     pub k: f64,
     /// Thickness.
     pub h: f64,
-    /// How pairs are found, which orders the sum. In the contest bodies at the same place leave each other alone.
+    /// The way to find pairs, which orders the sum. In the contest bodies at the same place do not push each other.
     pub detection: CollisionDetection,
 }
 
@@ -59,7 +59,7 @@ const fn term(kind: PairKind) -> Term {
     }
 }
 
-/// The sum, as far as it has come.
+/// The sum so far.
 struct PenaltySum<'a> {
     world: &'a World,
     layer: PenaltyLayer,
@@ -76,7 +76,8 @@ impl PenaltySum<'_> {
         }
     }
 
-    /// Returns `k` times how deep the layers of two bodies overlap, a negative number; none where they do not.
+    /// Returns `k` times the depth of the overlap of two bodies' layers, a negative number; `None` if they do not
+    /// overlap.
     fn depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
         let PenaltyLayer { k, h, detection } = self.layer;
         let makes = |slip: Slip| self.world.student.slips_by(term, slip);

@@ -15,8 +15,8 @@ use fosssim_num::vector::Vec2;
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Trace];
 
-/// The numbers of one record, with this student's mistakes of logging. A block is `None` where scenes of this
-/// collision type have none.
+/// The numbers of one record, with this student's mistakes of logging. A block is `None` if scenes of this collision
+/// type have none.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
     /// Positions.
@@ -44,8 +44,8 @@ impl Record {
         }
     }
 
-    /// Appends the record's bytes (trace-format.md 3). `claim` stands in for the number of polynomials where a program
-    /// lies about it.
+    /// Appends the record's bytes (trace-format.md 3). `claim` replaces the number of polynomials if a program lies
+    /// about it.
     pub fn encode(&self, claim: Option<i32>, bytes: &mut Vec<u8>) {
         self.x.iter().chain(&self.v).for_each(|value| bytes.extend(value.to_le_bytes()));
         if let Some(impulses) = &self.impulses {
@@ -78,7 +78,7 @@ pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepF
     written(scene, student, StepLog::default())
 }
 
-/// Returns the trace of a program that may go on for ever: up to the step that has more polynomials than this.
+/// Returns the trace of a program that may run forever: up to the step that has more polynomials than this.
 ///
 /// # Errors
 /// The bytes that were written, and why there are no more.

@@ -1,7 +1,7 @@
 //! Correct programs that the explanations are known to get wrong.
 
-/// Correct variants that explanations accuse of something in some scene where they are asked all the same; the goal is
-/// an empty list.
+/// Correct variants that explanations accuse of something in some scene when called for them; the goal is an empty
+/// list.
 pub const KNOWN_ACCUSED: &[&str] = &[
     // More round-off than the explanations allow for, and then any formula will do.
     "frame-shifted",

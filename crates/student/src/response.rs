@@ -36,7 +36,7 @@ fn restitution(world: &World) -> f64 {
 }
 
 /// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
-/// `predicted.x`, which may be an earlier state than the one that is changed.
+/// `predicted.x`, which may be an earlier state than the changed one.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
     let u = if world.student.makes(Mistake::ResponseNotNormalized) { contact.n } else { unit(contact.n) };
     let mut response = PairResponse { world, q_start, predicted, result, u, bounce: bounce(world) };
@@ -147,7 +147,7 @@ impl PairResponse<'_> {
         }
     }
 
-    /// Bounces a particle off a half-plane, fixed ones, too: the course's own response has no test for them.
+    /// Bounces a particle off a half-plane, also a fixed one: the course's own response has no test for it.
     fn particle_half_plane(&mut self, one: usize) {
         let student = self.world.student;
         let spares = student.makes(Mistake::ResponseHalfPlaneSparesFixed) && self.world.fixed(one);

@@ -115,7 +115,7 @@ impl SimplePass<'_> {
         at(if from_start { &self.start } else { &state.v }, particle)
     }
 
-    /// Returns the mass of a body of the pair: infinite where it is fixed.
+    /// Returns the mass of a body of the pair: infinite if it is fixed.
     fn mass(&self, kind: &SimpleKind, particle: usize) -> f64 {
         let is_finite = [Slip::FixedFinite, Slip::FixedAsFree].into_iter().any(|slip| self.makes(kind.response, slip));
         match () {
@@ -125,7 +125,7 @@ impl SimplePass<'_> {
         }
     }
 
-    /// Changes the velocity of a body of the pair, which `role` tells.
+    /// Changes the velocity of a body of the pair, which `role` names.
     fn push(&self, kind: &SimpleKind, state: &mut State, (role, particle): (usize, usize), n: Vec2, change: Vec2) {
         if !self.world.fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
             let part = TermPart { role, length: length(n), ..TermPart::from_term(kind.response, particle) };

@@ -11,13 +11,13 @@ use fosssim_model::scene::Collision;
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Trace];
 
-/// Advances `state` by one step (simulation.md 1). `log` is that of the step before; it is emptied first, unless that
-/// is forgotten. `write` is called for each record that the program writes: the mid record where there is one, and the
-/// end record (trace-format.md 2).
+/// Advances `state` by one step (simulation.md 1). `log` is the log of the step before; it is emptied first, unless the
+/// student forgets that. `write` is called for each record that the program writes: the mid record if there is one, and
+/// the end record (trace-format.md 2).
 ///
 /// # Errors
-/// [`StepFailure`] where the course's program would never end. `state` and `log` are unspecified then, and the end
-/// record was not written.
+/// [`StepFailure`] if the course's program would never end. `state` and `log` are unspecified then, and the end record
+/// was not written.
 pub fn step(
     world: &World,
     state: &mut State,

@@ -4,16 +4,16 @@ use fosssim_num::rpoly::DoesNotTerminate;
 /// The reason why a step has no end.
 #[derive(Debug, thiserror::Error)]
 pub enum StepFailure {
-    /// The course's root finder would search for ever.
+    /// The course's root finder would search forever.
     #[error("the root finder would search for ever: a polynomial is not finite")]
     RootFinder(#[from] DoesNotTerminate),
-    /// Newton's method goes round in circles.
+    /// Newton's method cycles.
     #[error("implicit-euler does not converge")]
     Newton,
     /// A vortex force cannot be integrated implicitly.
     #[error("no addHessXToTotal defined for VortexForce")]
     VortexHessian,
-    /// The guard of [`StepLog`](super::StepLog) refused a polynomial: the caller knows enough.
+    /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller knows enough.
     #[error("the caller refused a polynomial, so the step was left")]
     Refused,
 }

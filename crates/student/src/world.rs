@@ -1,4 +1,4 @@
-//! The world that a step works on: the scene's constants, the moving state, and the pairs that detection looks at.
+//! The world of a step: the scene's constants, the moving state, and the pairs that detection checks.
 use fosssim_model::scene::Scene;
 use fosssim_num::{
     polynomial::Polynomial,
@@ -13,7 +13,7 @@ use super::{
     objects::{Contact, Object, Pair, State},
 };
 
-/// Everything that stays as it is during a run. Programs of many students share a scene, and none holds a list of its
+/// Everything that stays constant during a run. Programs of many students share a scene, and none holds a list of its
 /// pairs, of which a large scene has millions.
 pub struct World {
     /// The scene as loaded.
@@ -39,9 +39,9 @@ pub struct StepLog<'a> {
     pub prediction: Option<Vec<f64>>,
 }
 
-/// Says whether a step may go on after this polynomial (index in the step's log, coefficients highest power first). A
-/// search for a certain step saves the rest of it as soon as it is another one. A guard also bounds loops that mistakes
-/// make endless.
+/// Decides whether a step may continue after this polynomial (index in the step's log, coefficients highest power
+/// first). A search for a certain step skips the rest of it as soon as it differs. A guard also bounds loops that
+/// mistakes make endless.
 pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.

@@ -51,7 +51,7 @@ fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();
-        // A student who asks for two shared particles still finds a zone of one in another.
+        // A student who requires two shared particles still finds a zone of one in another.
         let meet = |one: &Zone, other: &Zone| {
             let most = if student.makes(Mistake::ZonesJoinTwoShared) {
                 one.particles.len().min(other.particles.len()).min(2)

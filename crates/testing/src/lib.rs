@@ -1,8 +1,8 @@
-//! The needs of tests from a machine, and their message where one is not met. Only tests use it.
+//! The needs of tests from a machine, and their message if one is not met. Only tests use it.
 //!
-//! A test that can't run asks [`skip`] and returns. That leaves a line in a list, which `cargo test` prints at its end
-//! (the test `skips` of this crate, which comes last because of the crate's name). Where `FOSSSIM_REQUIRE` names the
-//! need, or says `all`, the test fails instead: a machine that is known to have something can't pass without it.
+//! A test that can't run calls [`skip`] and returns. That leaves a line in a list, which `cargo test` prints at its end
+//! (the test `skips` of this crate, which comes last because of the crate's name). If `FOSSSIM_REQUIRE` names the need,
+//! or is `all`, the test fails instead: a machine that is known to have something can't pass without it.
 #![forbid(unsafe_code)]
 
 pub mod scenes;
@@ -18,9 +18,9 @@ pub const LIST: &str = "FOSSSIM_SKIPS";
 /// Something that not every machine has.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Need {
-    /// The ground-truth corpus beside the checkout.
+    /// The ground-truth corpus next to the checkout.
     Corpus,
-    /// The course's original programs beside the checkout.
+    /// The course's original programs next to the checkout.
     Originals,
     /// A kernel that can run programs safely.
     Sandbox,
@@ -60,7 +60,7 @@ pub enum Need {
     Mounts,
 }
 
-/// All of them, each with its name in `FOSSSIM_REQUIRE`.
+/// All needs, each with its name in `FOSSSIM_REQUIRE`.
 const NAMES: [(Need, &str); 20] = [
     (Need::Corpus, "corpus"),
     (Need::Originals, "originals"),
@@ -98,10 +98,10 @@ impl fmt::Display for Need {
     }
 }
 
-/// Says that the calling test can't run, and why; the test returns then.
+/// Reports that the calling test can't run, and why; the test returns then.
 ///
 /// # Panics
-/// When `FOSSSIM_REQUIRE` asks for the need, or holds a word that is none.
+/// When `FOSSSIM_REQUIRE` names the need, or holds an unknown word.
 pub fn skip(need: Need, why: impl fmt::Display) {
     let why = why.to_string().replace(['\n', '\t'], " ");
     let required = std::env::var(REQUIRE).unwrap_or_default();
@@ -132,7 +132,7 @@ fn allowed(need: Need, required: &str) -> Result<(), String> {
 }
 
 /// Returns the list of this run: tests and the summary have the same parent, cargo. Other runners print no summary, and
-/// get a list only where they are told one.
+/// get a list only if one is set.
 #[must_use]
 pub fn list() -> Option<PathBuf> {
     if let Some(list) = std::env::var_os(LIST) {

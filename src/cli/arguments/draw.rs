@@ -1,4 +1,4 @@
-//! Arguments of the commands that draw and look closely, as typed.
+//! Arguments of the commands that draw and show details, as typed.
 use super::values::at_least_one;
 use crate::render::Size;
 use clap::{Args, ValueEnum};
@@ -36,10 +36,10 @@ pub(in crate::cli) struct RenderArguments {
     /// A second trace, drawn on top in dashed outlines.
     #[arg(long, value_name = "TRACE")]
     pub(in crate::cli) overlay: Option<PathBuf>,
-    /// The file or folder to write; the ending of a file's name says what it becomes.
+    /// The file or folder to write; the ending of a file's name selects the format.
     #[arg(short, long, value_name = "FILE or DIR")]
     pub(in crate::cli) output: PathBuf,
-    /// The form of the output, if its name does not say it.
+    /// The format of the output, if its name does not show it.
     #[arg(long, value_enum)]
     pub(in crate::cli) format: Option<RenderFormat>,
     /// Width and height in pixels.
@@ -59,7 +59,7 @@ pub(in crate::cli) struct RenderArguments {
     pub(in crate::cli) no_label: bool,
 }
 
-/// How a detection is shown.
+/// The format of a detection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum DetectFormat {
     /// For people.
@@ -109,10 +109,10 @@ pub(in crate::cli) struct DetectArguments {
     /// The detection pass of the step, from 1.
     #[arg(long, value_name = "N", requires = "scene", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(in crate::cli) pass: u32,
-    /// How the answer is written.
+    /// The format of the answer.
     #[arg(long, value_enum, default_value_t = DetectFormat::Text)]
     pub(in crate::cli) format: DetectFormat,
-    /// Where to write it, instead of to standard output.
+    /// The file to write, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
 }

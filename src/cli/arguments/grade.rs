@@ -95,7 +95,7 @@ pub(in crate::cli) struct GradeArguments {
     /// With reports for students, also write the page that they see when hidden groups are published, if there are any.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
     pub(in crate::cli) published_page: Option<PathBuf>,
-    /// Keep hidden groups in reports for students, because the platform that asks for them hides these groups itself.
+    /// Keep hidden groups in reports for students, because the requesting platform hides these groups itself.
     #[arg(long, env = "FOSSSIM_PLATFORM_HIDES")]
     pub(in crate::cli) platform_hides: bool,
     /// Show a line per submission only.
@@ -131,7 +131,7 @@ pub(in crate::cli) struct GradeArguments {
     /// go to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
     pub(in crate::cli) shard: Option<ShardArgument>,
-    /// Print at the end where the processor time went: programs, sandbox, judging, explaining, reports.
+    /// Print at the end the processor time of each part: programs, sandbox, judging, explaining, reports.
     #[arg(long, conflicts_with_all = ["watch", "traces"])]
     pub(in crate::cli) timings: bool,
     /// Judge traces that exist already, and run no program. Every path is a folder with Group/name.bin, or name.bin,
@@ -144,7 +144,7 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) unsafe_no_sandbox: bool,
 }
 
-/// A grading has no more shards.
+/// The greatest number of shards of a grading.
 pub(in crate::cli) const MOST_SHARDS: usize = 10_000;
 
 /// A part of the submissions: the `number`-th of `of`.
@@ -212,7 +212,7 @@ pub(in crate::cli) struct SuiteInitArguments {
     #[arg(help = help_of_built_in())]
     pub(in crate::cli) name: Option<String>,
 
-    /// Where to write it, instead of to standard output.
+    /// The file to write, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
 }
@@ -234,13 +234,13 @@ pub(in crate::cli) struct SuiteCheckArguments {
     pub(in crate::cli) mistakes: bool,
 }
 
-/// Lists the suites that come with the program; the first one is the default.
+/// Lists the suites that come with the program; the first is the default.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle suite list --format json")]
 pub(in crate::cli) struct SuiteListArguments {
-    /// How the list is written.
+    /// The format of the list.
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = TextOrJson::Text)]
     pub(in crate::cli) format: TextOrJson,
 }

@@ -17,7 +17,7 @@ use values::{TextOrJson, assignment, at_least_one, explaining, reader, rules};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// When to use colors; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
+    /// The use of colors; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
     #[arg(
         long,
         global = true,
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     pub(super) command: Command,
 }
 
-/// When colors are used.
+/// The use of colors.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ColorChoice {
     Auto,
@@ -50,12 +50,12 @@ SUITE is a file, or a milestone of the course: t1m1, t1m2, t1m3, t2m1, t2m2 or t
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
 TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asset:Group/name for its recording.";
 
-// Help's sentence about each among the others stands here, all else with its arguments.
+// The commands. Help's sentence about each in the list is here, all else with its arguments.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
     Simulate(SimulateArguments),
-    /// Grades a trace by the original's rules and by fair ones: what is wrong, and where.
+    /// Grades a trace by the original's rules and by fair ones, and shows what is wrong, and where.
     Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
     Explain(ExplainArguments),
@@ -82,7 +82,7 @@ pub(super) enum Command {
     Scene(SceneCommand),
     /// Grades a right and a wrong sample program, to show how everything works.
     Demo(DemoArguments),
-    /// Says which layers of the sandbox hold on this machine, and what to install.
+    /// Reports which layers of the sandbox hold on this machine, and what to install.
     Doctor(DoctorArguments),
     /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
     Selftest(SelftestArguments),
@@ -96,7 +96,7 @@ pub(super) enum Command {
     Original(OriginalArguments),
     /// Prints a completion script for a shell.
     Completions(CompletionsArguments),
-    /// Prints the manual page, or that of a command.
+    /// Prints the program's manual page, or a command's.
     Man(ManArguments),
 }
 
@@ -105,7 +105,7 @@ fn step(word: &str) -> Result<u32, &'static str> {
     word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
 
-/// How the report on a trace is written.
+/// The format of the report on a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum CheckFormat {
     /// For people.
@@ -118,7 +118,7 @@ pub(super) enum CheckFormat {
     Github,
 }
 
-/// How an explanation is written.
+/// The format of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ExplainFormat {
     /// For people.
@@ -144,13 +144,13 @@ Example:
 pub(super) struct SimulateArguments {
     /// The scene, a file or asset:Group/name.
     pub(super) scene: PathBuf,
-    /// Where to write the trace; - for standard output. Without this option no trace is written.
+    /// The file for the trace; - for standard output. Without this option no trace is written.
     #[arg(short, long, value_name = "TRACE")]
     pub(super) output: Option<PathBuf>,
     /// Search all roots, also where a certificate excludes an impact, and count disagreements.
     #[arg(long)]
     pub(super) audit: bool,
-    /// How the summary is written.
+    /// The format of the summary.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
     #[command(flatten)]
@@ -172,10 +172,10 @@ pub(super) struct CheckArguments {
     /// The rule books.
     #[arg(long, value_parser = rules(), default_value = "both")]
     pub(super) rules: Rules,
-    /// How the report is written.
+    /// The format of the report.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
     pub(super) format: CheckFormat,
-    /// Where to write the report, instead of to standard output.
+    /// The file for the report, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// Show all wrong steps, not only the first one, with expected and actual values.
@@ -188,7 +188,7 @@ pub(super) struct CheckArguments {
     /// Show these steps alone, from 1; 0 is the first record. Several are separated by commas.
     #[arg(long, short, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = step)]
     pub(super) step: Vec<u32>,
-    /// Do not look for the mistake that explains a wrong trace.
+    /// Do not search for the mistake that explains a wrong trace.
     #[arg(long)]
     pub(super) no_explain: bool,
     /// Number of threads, eight at most; the report does not depend on it. One per core by default.
@@ -212,7 +212,7 @@ Example:
 With --program, the program runs in the sandbox on small scenes that make every term of every formula visible. \
 The exit code is 0 when the fair rules accept everything, else 1.")]
 pub(super) struct ExplainArguments {
-    /// The scene and the trace; with --program, scenes to run besides the built-in ones.
+    /// The scene and the trace; with --program, scenes to run in addition to the built-in ones.
     #[arg(value_name = "SCENE TRACE")]
     pub(super) inputs: Vec<PathBuf>,
     /// The program to run.
@@ -232,10 +232,10 @@ pub(super) struct ExplainArguments {
     /// How much the explanation shows.
     #[arg(long, value_parser = explaining(), default_value = "full")]
     pub(super) hints: Hints,
-    /// How the report is written.
+    /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
     pub(super) format: ExplainFormat,
-    /// Where to write the report, instead of to standard output.
+    /// The file for the report, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
@@ -259,13 +259,13 @@ pub(super) struct ShrinkArguments {
     pub(super) program: PathBuf,
     /// The scene to begin with, a file or asset:Group/name. By default the suite's, or small scenes of the milestone.
     pub(super) scene: Option<PathBuf>,
-    /// The suite whose scenes are tried. By default those of the program's own milestone.
+    /// The suite whose scenes are tried. By default the scenes of the program's own milestone.
     #[arg(long, value_name = "SUITE")]
     pub(super) suite: Option<String>,
     /// The wrong step of the scene to begin with, from 1; by default the first one that shows the cause alone.
     #[arg(long, value_name = "N", requires = "scene", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) step: Option<u32>,
-    /// Where to write the scene.
+    /// The file for the scene.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// The most runs for one cause.
@@ -274,7 +274,7 @@ pub(super) struct ShrinkArguments {
     /// The most processor time for one cause, in seconds.
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub(super) seconds: u32,
-    /// How the report is written.
+    /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
     pub(super) format: ExplainFormat,
     /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
@@ -293,17 +293,17 @@ pub(super) enum TraceCommand {
     Show(TraceShowArguments),
 }
 
-/// Says what a trace holds, and where it is damaged.
+/// Reports what a trace holds, and where it is damaged.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle trace info scenes/test00.xml submission.bin")]
 pub(super) struct TraceInfoArguments {
-    /// The scene, which decides how the trace is to be read.
+    /// The scene, which decides how the trace is read.
     pub(super) scene: PathBuf,
     /// The trace.
     pub(super) trace: PathBuf,
-    /// How the answer is written.
+    /// The format of the answer.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
 }
@@ -314,14 +314,14 @@ pub(super) struct TraceInfoArguments {
 Example:
   fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
 pub(super) struct TraceShowArguments {
-    /// The scene, which decides how the trace is to be read.
+    /// The scene, which decides how the trace is read.
     pub(super) scene: PathBuf,
     /// The trace.
     pub(super) trace: PathBuf,
     /// The step, from 1; 0 is the initial record.
     #[arg(long, short, value_name = "N", allow_negative_numbers = true, value_parser = step)]
     pub(super) step: u32,
-    /// How the answer is written.
+    /// The format of the answer.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
 }
@@ -381,7 +381,7 @@ Example:
   fosssim-oracle page --output oracle.html
   fosssim-oracle page --suite course/suite.toml --for student --output course.html")]
 pub(super) struct PageArguments {
-    /// Where to write it; - is standard output.
+    /// The file to write; - is standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
     /// The module (WebAssembly) to put inside, instead of the program's own; scripts/browser-page makes it.

@@ -11,7 +11,7 @@ pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static
     word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
 }
 
-/// How a report is written.
+/// The format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum TextOrJson {
     /// For people.
@@ -47,7 +47,7 @@ pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
     ])
 }
 
-/// Returns how much reports tell.
+/// Returns the hints of reports.
 pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("none", Hints::None, "The verdict only"),
@@ -57,7 +57,7 @@ pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
     ])
 }
 
-/// Returns how much an explanation tells: at least the likely mistake.
+/// Returns the hints of an explanation: at least the likely mistake.
 pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),

@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
-    // An output that can't be written is said before the work is done, not after.
+    // An output that can't be written is reported before the work is done, not after.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_lasting(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
@@ -88,7 +88,7 @@ fn write(
     }
 }
 
-/// The parts besides the verdict that are shown; they decide what is kept of a trace.
+/// The parts after the verdict that are shown; they decide what is kept of a trace.
 struct ShownParts {
     is_explained: bool,
     is_drawn: bool,
@@ -96,7 +96,7 @@ struct ShownParts {
 
 impl ShownParts {
     fn from_arguments(arguments: &CheckArguments) -> Self {
-        // Of single steps the numbers are asked for.
+        // The numbers of single steps are shown.
         let is_explained = arguments.step.is_empty() && !arguments.no_explain;
         Self { is_explained, is_drawn: arguments.format == CheckFormat::Html }
     }
@@ -119,7 +119,7 @@ fn options(arguments: &CheckArguments) -> replay::Options {
     }
 }
 
-/// Returns the list for wrong steps, of those that are to be shown.
+/// Returns the list for wrong steps, if they are shown.
 fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
@@ -140,14 +140,14 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
         bail!(why);
     }
     match (&outcome.stop, trace.failure()) {
-        // Further steps may or may not have been read by then: what failed there is not asked for.
+        // Further steps may or may not have been read by then: their faults are not used.
         (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
         // Bytes that are missing inside polynomials do not stop the original, but may be missing only here.
         (_, Some(message)) => bail!(not_read(outcome, &trace.name, &message)),
     }
 }
 
-/// Returns the evidence: of the whole trace, where what was kept is not all of it and the file can be read again.
+/// Returns the evidence: of the whole trace if the kept part is not all of it and the file can be read again.
 fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)

@@ -1,4 +1,4 @@
-//! Commands to look closer at a scene that is not accepted: the one that was typed, with the scene.
+//! Commands that show more of a scene that is not accepted: the user's own command line, narrowed to that scene.
 use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,
@@ -11,7 +11,7 @@ pub(super) struct Closer<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) plan: &'a Plan,
     pub(super) submissions: &'a [Submission],
-    /// Where the trace of a scene lies, when traces are kept.
+    /// The place of a scene's trace, if traces are kept.
     pub(super) trace: &'a dyn Fn(&str, &str) -> Option<PathBuf>,
 }
 

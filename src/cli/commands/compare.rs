@@ -1,4 +1,4 @@
-//! `grade --compare`: reads an earlier grading, and adds its grades to those of this one.
+//! `grade --compare`: reads an earlier grading, and compares this one's grades with it.
 use crate::{
     cli::{console, input},
     files::Place,
@@ -12,7 +12,7 @@ use std::path::Path;
 /// The file of grades in a folder for results.
 const FILE: &str = "grades.jsonl";
 
-/// A larger one is not read: 10,000 submissions of 120 wrong scenes write less.
+/// The size of the largest file that is read: 10,000 submissions of 120 wrong scenes write less.
 const LARGEST: u64 = 4 << 30;
 
 /// The document of `--format json`.
@@ -40,7 +40,7 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     Ok(grades)
 }
 
-/// Adds to each grade the earlier one of the same name. Where there is one of each, names do not matter.
+/// Adds to each grade the earlier grade of the same name. If there is one of each, names do not matter.
 pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     if let ([before], [grade]) = (earlier, &mut *grades) {
         grade.before = Some(before.clone());

@@ -1,4 +1,4 @@
-//! `detect`: one detection call, looked at closely.
+//! `detect`: one detection call in detail.
 use crate::files::Identity;
 use crate::{
     cli::{
@@ -143,7 +143,7 @@ fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
 /// The records of a step in a trace.
 struct TracedStep {
     before: State,
-    /// The mid record's state; that of the record before the step's end where the scene has none.
+    /// The mid record's state; if the scene has none, the state before the step's end.
     mid: State,
     end: Frame,
     name: String,

@@ -1,4 +1,4 @@
-//! How a grading goes, on standard error: bars on a terminal, otherwise a line per finished submission.
+//! The progress of a grading, on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
     cli::{console, screen},
     files::Place,
@@ -11,7 +11,7 @@ use crate::{
 use indicatif::{MultiProgress, ProgressBar};
 use std::{collections::BTreeMap, io, path::Path};
 
-/// The display of one grading; it goes away when dropped.
+/// The display of one grading, which is removed when it is dropped.
 pub(super) struct LiveDisplay<'a> {
     plan: &'a Plan,
     submissions: &'a [Submission],
@@ -52,7 +52,7 @@ impl<'a> LiveDisplay<'a> {
                         bar.finish_and_clear();
                     }
                     match cached {
-                        // A result that was taken over says nothing about how long the rest will take.
+                        // A result that was taken over does not show how long the rest will take.
                         true => bars.overall.set_length(bars.overall.length().unwrap_or(1).saturating_sub(1)),
                         false => bars.overall.inc(1),
                     }

@@ -8,7 +8,7 @@ use crate::{
 /// The greatest number of scenes and mistakes shown of a class; class.txt has all.
 pub(super) const HARDEST: usize = 5;
 
-/// Returns how a grading ends that nobody stopped.
+/// Returns the exit code of a grading that was not stopped.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
     if grades.iter().any(Grade::is_our_fault) {
         exit::FAULT
@@ -24,17 +24,17 @@ pub(super) fn file_of_scene(name: &str) -> String {
     file_name(&name.replace('/', "_"))
 }
 
-/// Returns a name as a file name: no separators, no leading dot, not too long, and another for every other name.
+/// Returns a name as a file name: no separators, no leading dot, not too long, and different for every name.
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
-    // Nor a name that a shell pattern makes an option, nor a device's or an invalid name on Windows.
+    // No name that a shell pattern makes an option, and no device's or invalid name on Windows, is kept.
     let plain = plain.trim_start_matches(['.', '-']).trim().trim_end_matches('.');
     if !plain.is_empty() && plain == name && !is_device(plain) {
         return plain.to_owned();
     }
     let digest = &blake3::hash(name.as_bytes()).to_hex()[..8];
-    // The mark stands in no name that is taken as it is, or somebody could be called like another's file.
+    // No raw name contains the mark; otherwise a submission could have the name of another's file.
     format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
 }
 
@@ -45,7 +45,7 @@ fn is_device(name: &str) -> bool {
     matches!(stem.as_str(), "con" | "prn" | "aux" | "nul") || numbered("com") || numbered("lpt")
 }
 
-/// Returns how much is shown of each submission.
+/// Returns the detail with which each submission is shown.
 pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
     match (arguments.quiet, arguments.verbose) {
         (true, _) => TextDetail::Line,
@@ -55,8 +55,8 @@ pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
     }
 }
 
-/// Renders the report for people who look at it now. On several submissions it ends with what the class comes to, its
-/// `hardest` scenes and mistakes, and who is not graded.
+/// Renders the report for a terminal. On several submissions it ends with the result of the class, its `hardest` scenes
+/// and mistakes, and the entries that are not graded.
 pub(super) fn text(
     grades: &[Grade],
     passed_over: &[PassedOver],

@@ -1,4 +1,4 @@
-//! `explain`: what is likely wrong with the program that left a trace, or with a program at hand.
+//! `explain`: the likely mistakes of the program that left a trace, or of a program at hand.
 use super::{
     probes::{Drawing, ExaminedProgram, ProgramUnderTest, case},
     shrink,

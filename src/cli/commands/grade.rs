@@ -55,10 +55,10 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// Where results go when several submissions are graded and no folder is named.
+/// The default folder for results when several submissions are graded.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
 
-/// Where traces on which the grader itself failed go when there is no folder for results.
+/// The folder for traces on which the grader itself failed, without a folder for results.
 const FAULTS: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
@@ -108,10 +108,10 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     refuse_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
-    // Before any output is touched, whose own handler would end the program at once.
+    // Before any output is touched, whose own handler would end the program immediately.
     let cancellation = cancelled_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
-        // An output that can't be written is said before the work is done, not after.
+        // An output that can't be written is reported before the work is done, not after.
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
@@ -143,7 +143,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
-/// Everything that stays the same between two gradings of `--watch`.
+/// The data that stay the same between two gradings of `--watch`.
 struct GradingSession<'a> {
     arguments: &'a Arguments,
     plan: &'a Plan,
@@ -153,11 +153,11 @@ struct GradingSession<'a> {
     pages: Option<Pages>,
     /// Whether scenes of the suite were left out on purpose.
     is_part: bool,
-    /// The part of the submissions that this is, if it is one.
+    /// The part of the submissions that this is, if it is a part.
     sharding: Option<Sharding>,
     /// The entries that are no submissions.
     passed_over: Vec<PassedOver>,
-    /// Where the processor time of runs is added up, if it is asked for.
+    /// The sum of the processor time of runs, on request.
     times: &'a Timings,
 }
 
@@ -186,7 +186,7 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Says which results come from earlier runs, and how to go on with a grading that was stopped.
+    /// Prints which results come from earlier runs, and how to continue a grading that was stopped.
     fn say_what_was_kept(&self, grades: &[Grade]) {
         let taken: usize = grades.iter().map(Grade::taken_over).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
@@ -203,7 +203,7 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Returns where the trace of a scene goes that is not accepted, when traces are kept.
+    /// Returns the place for the trace of a scene that is not accepted, if traces are kept.
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
@@ -290,7 +290,7 @@ impl GradingSession<'_> {
             .with_context(|| format!("cannot write the progress to {}", file.display()))
     }
 
-    /// Returns the entries that are no submissions. Of a shard, `merge` tells them.
+    /// Returns the entries that are no submissions. For shards, `merge` reports them.
     fn passed_over(&self) -> &[PassedOver] {
         if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
@@ -307,7 +307,7 @@ impl GradingSession<'_> {
         results.write(reports, |grades| self.text(grades, submissions))
     }
 
-    /// Renders the report for people who look at it now: of a class a table, and what it comes to.
+    /// Renders the report for a terminal: of a class a table, and its result.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = shown(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
@@ -333,7 +333,7 @@ impl GradingSession<'_> {
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::complain("waiting for a change; Ctrl-C ends\n");
-            // A file is graded when it has stopped changing: a linker writes in several goes.
+            // A file is graded when it has stopped changing: a linker writes in several steps.
             let mut last = seen.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
@@ -371,8 +371,8 @@ fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
-/// Writes a submission's log: how it was built, and of each run the verdict, the reasons and what the program printed,
-/// made harmless. A fault of the submission itself is written once.
+/// Writes a submission's log: its build, and the verdict, the reasons and the harmless form of the output of each run.
+/// A fault of the submission itself is written once.
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let mut text = String::new();
     if let Some(build) = &grade.build {

@@ -168,7 +168,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     Ok(if broken == 0 && table.held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the sandbox, or a refusal that says what is missing.
+/// Returns the sandbox, or an error that names what is missing.
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {

@@ -15,7 +15,7 @@ use std::{
 /// The run's file in an output folder.
 const FILE: &str = "last-run.json";
 
-/// A larger one is not read: 10,000 submissions of 85 scenes write a quarter of it.
+/// The size of the largest file that is read: 10,000 submissions of 85 scenes write a quarter of it.
 const LARGEST: u64 = 256 << 20;
 
 /// By submission and scene, whether it was accepted.
@@ -56,7 +56,7 @@ impl LastRun {
         self.known.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
     }
 
-    /// Remembers these grades. Scenes that were not run keep what is known of them.
+    /// Stores these grades. Scenes that were not run keep their earlier state.
     pub(super) fn remember(&mut self, grades: &[Grade]) {
         for grade in grades {
             let scenes = self.known.entry(grade.submission.clone()).or_default();

@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let names = &first.common.submissions;
     refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
-    // Held to the end: nobody else works in this folder.
+    // Held to the end: no other process works in this folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in FOLDERS {
@@ -105,7 +105,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     Ok(parts)
 }
 
-/// Checks that all shards of one grading are there, each once; one of them, and where the results go.
+/// Checks that each shard of one grading exists once; returns one of them, and the place of the results.
 fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
@@ -166,7 +166,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
-        // An entry that somebody damaged is graded again, as in any folder.
+        // A damaged entry is graded again, as in any folder.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }

@@ -1,4 +1,4 @@
-//! The commands: each reads its inputs, lets the rooms below do the work, and prints what a renderer makes of it.
+//! The commands: each reads its inputs, lets the rooms below do the work, and prints what a renderer makes.
 
 mod check;
 mod closer;
@@ -44,7 +44,7 @@ use anyhow::Result;
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
     let done = match command {
-        // The exit code of these tells a verdict.
+        // The exit code of these commands is a verdict.
         Command::Check(arguments) => return check::run(arguments),
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Shrink(arguments) => return shrink::run(arguments),

@@ -30,7 +30,7 @@ const BUDGET: usize = 1 << 19;
 /// The cards of a grading, and where the pages go.
 pub(super) struct Pages {
     cards: Place,
-    /// The folder for pages, when there is one.
+    /// The folder for pages, if there is one.
     folder: Option<PathBuf>,
     /// Whether pages for students are made, too.
     for_students: bool,
@@ -80,8 +80,8 @@ impl Pages {
         GradePage { grade, card: &|name| self.card(name), class, reader }.html()
     }
 
-    /// Writes the pages for staff into the folder for results, and beside them those to hand out: of a class always,
-    /// of one submission where they are asked for. Returns the one to begin with.
+    /// Writes the pages for staff into the folder for results, and next to them those for students: of a class always,
+    /// of one submission on request. Returns the page to begin with.
     pub(super) fn write(
         &self,
         grades: &[Grade],
@@ -128,12 +128,12 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
             examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
-        // A failure while drawing costs nobody's points.
+        // A failure while drawing costs no points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw(&own, false).map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
     }
-    // A picture that can't be made costs nobody's points.
+    // A picture that can't be made costs no points.
     let card = guarded(|| card(judged, None, 3)).unwrap_or_else(|fault| {
         Some(Card::saying(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
@@ -141,8 +141,8 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.kept())
 }
 
-/// Returns the card of a judged trace. `trace_name` is where its reader finds the trace, `depth` that of the heading
-/// above.
+/// Returns the card of a judged trace. `trace_name` is the trace's name for the reader, `depth` the level of the
+/// heading above.
 pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
     let JudgedTrace { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));

@@ -1,4 +1,4 @@
-//! A program that is run on many small scenes: what is wrong on each, and what is likely wrong with the program.
+//! A program that is run on many small scenes: the faults on each, and the likely mistakes of the program.
 use super::{host::backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
@@ -39,10 +39,10 @@ use std::{
 /// The time on the processor and on the clock for a program on scenes of which a right one needs some milliseconds.
 const PATIENT: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
-/// The number of runs that may end at a limit at all: the other scenes would say the same.
+/// The number of runs that may end at a limit: further scenes would show the same.
 const MOST_STOPPED: usize = 4;
 
-/// How much is told, and whether pictures are drawn.
+/// The hints of cards, and whether pictures are drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drawing {
     pub(super) hints: Hints,
@@ -60,7 +60,7 @@ pub(super) struct ProgramUnderTest {
     nowhere: Place,
 }
 
-/// A program's runs, with all that is to be said of them.
+/// A program's runs, and the report on them.
 pub(super) struct ExaminedProgram {
     pub(super) diagnosis: Diagnosis,
     /// The card of each case.
@@ -72,7 +72,7 @@ pub(super) struct ExaminedProgram {
 }
 
 impl ProgramUnderTest {
-    /// Makes a program ready to be run. Without a suite it is of the milestone that it looks like.
+    /// Creates a program that can be run. Without a suite it belongs to the milestone that it looks like.
     pub(super) fn new(program: &Path, suite: Option<&str>, unsafe_no_sandbox: bool) -> Result<Self> {
         let mut ready = Self {
             program: placed(program),
@@ -117,8 +117,8 @@ impl ProgramUnderTest {
         RunLimits { cpu: limits.cpu.min(PATIENT[0]), wall: limits.wall.min(PATIENT[1]), ..limits }
     }
 
-    /// Returns the scenes to run: the probe scenes of the milestone, its suite's where these show what the probe scenes
-    /// do not, and those that are named.
+    /// Returns the scenes to run: the milestone's probe scenes, its suite's scenes if these show more, and the named
+    /// ones.
     pub(super) fn tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
         let mut tasks = Vec::new();
         for (name, scene) in diagnose::probe_scenes(self.assignment) {
@@ -204,11 +204,11 @@ pub(super) fn case(
     let options = Options { fair: true, ..Options::default() };
     let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
-    // How the program ended tells more than how its trace did.
+    // The end of the program explains more than the end of its trace.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
-    // Of what breaks off and is right so far there is nothing to explain.
+    // A run that breaks off, and is right so far, needs no explanation.
     let is_wrong = outcome.stop.is_none() || fair.findings.first_divergence.is_some();
     let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
@@ -243,7 +243,7 @@ pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
 }
 
 /// Returns a program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays,
-/// also that of a link: programs may go by the name that they are called.
+/// also that of a link: programs may depend on the name by which they are called.
 fn placed(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {
@@ -261,7 +261,7 @@ fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     }
 }
 
-/// Finds out of which milestone a program is, and says so where that is not the default.
+/// Finds the milestone of a program, and reports it if it is not the default.
 fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     let found = milestone::looks_like(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
     if found != Assignment::DEFAULT {
@@ -271,7 +271,7 @@ fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     Ok(found)
 }
 
-/// Returns the last line of a program's error output, where it wrote one.
+/// Returns the last line of a program's error output, if it wrote one.
 fn said(stderr: &[u8]) -> String {
     let text = printed(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());

@@ -39,7 +39,7 @@ struct Input {
     xml: Vec<u8>,
 }
 
-/// Returns the scenes that come with the program. Their recordings are asked for by name.
+/// Returns the embedded scenes. Their recordings are requested by name.
 fn bundled() -> Vec<Input> {
     let input =
         |name: &str| Some(Input { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() });
@@ -69,7 +69,7 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
     files.into_iter().map(read).collect()
 }
 
-/// The recordings before this run: those in a folder, or those that come with the program.
+/// The recordings before this run: those in a folder, or the embedded ones.
 struct EarlierRecordings<'a>(Option<&'a Path>);
 
 impl EarlierRecordings<'_> {
@@ -91,7 +91,7 @@ impl EarlierRecordings<'_> {
     }
 }
 
-/// Compares with what was recorded before, byte for byte.
+/// Compares with the earlier recordings, byte for byte.
 fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Result<u8> {
     let mut text = String::new();
     for (stem, recording) in recordings {
@@ -127,7 +127,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         replace(&place("bin.zst"), &packed)?;
         replace(&place("steps"), recording.digests.as_bytes())?;
     }
-    // The folder holds what the scenes give and nothing else.
+    // The folder holds only the results of scenes.
     for stem in EarlierRecordings(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {
@@ -141,7 +141,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     Ok(exit::ACCEPTED)
 }
 
-/// Returns the manifest names scenes, wherever they lie.
+/// Returns the manifest of these scenes, wherever they are.
 fn manifest(recordings: &[(String, Recording)]) -> String {
     recording::manifest(recordings.iter().map(|(_, recording)| recording))
 }

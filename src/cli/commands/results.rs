@@ -1,4 +1,4 @@
-//! Where results of a grading go: reports that were asked for, and the tables and pages of a folder.
+//! The places for results of a grading: requested reports, and the tables and pages of a folder.
 use super::pages::Pages;
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
@@ -18,18 +18,18 @@ use std::{
 /// Lines of class.txt are no wider, in columns.
 const CLASS_WIDTH: usize = 100;
 
-/// A report that was asked for.
+/// A requested report.
 pub(super) struct Report {
     pub(super) format: Format,
     pub(super) name: String,
-    /// The place where it goes; to standard output without.
+    /// The file for the report; standard output without one.
     pub(super) file: Option<PathBuf>,
 }
 
-/// Returns the reports that `--format` asks for.
+/// Returns the reports that `--format` requests.
 ///
 /// # Errors
-/// Unknown formats, and two of them at one place.
+/// Unknown formats, and two formats for one place.
 pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     let mut reports = Vec::new();
     for word in words {
@@ -57,10 +57,10 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     Ok(reports)
 }
 
-/// Refuses a format that holds one submission where there are several.
+/// Rejects a format that holds one submission if there are several.
 ///
 /// # Errors
-/// When one was asked for; `of_html` is what is said of HTML besides.
+/// When one was requested; `of_html` is added for HTML.
 pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
@@ -71,7 +71,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
     }
 }
 
-/// Returns the pages of a grading, if somebody may look at them: in the folder for results or in a report.
+/// Returns the pages of a grading, if they have a reader: in the folder for results or in a report.
 ///
 /// # Errors
 /// When there is no room for them.
@@ -84,7 +84,7 @@ pub(super) fn wanted_pages(
     let is_asked = arguments.staff_page.is_some()
         || arguments.published_page.is_some()
         || reports.iter().any(|report| report.format == Format::Html);
-    // A class's pages may be asked for later, and nobody wants to run it again for them.
+    // A class's pages may be requested later, without grading it again.
     let for_students = arguments.reader == Audience::Student || is_class;
     (folder.is_some() || is_asked).then(|| Pages::new(folder, for_students)).transpose()
 }
@@ -94,11 +94,11 @@ pub(super) struct Results<'a> {
     /// The folder for results, when there is one.
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
-    /// The reader of the reports. Files in the folder are for staff, but for pages in students/.
+    /// The reader of the reports. Files in the folder are for staff, except for pages in students/.
     pub(super) reader: Audience,
-    /// Whether the platform that asks for the reports keeps hidden groups from the reader.
+    /// Whether the requesting platform keeps hidden groups from the reader.
     pub(super) platform_hides: bool,
-    /// The file for a page that tells staff more than the reader, when one is wanted.
+    /// The file for a page that shows staff more than the reader, on request.
     pub(super) staff_page: Option<&'a Path>,
     /// The file for the page that students see when hidden groups are published.
     pub(super) published_page: Option<&'a Path>,
@@ -110,8 +110,7 @@ pub(super) struct Results<'a> {
 }
 
 impl Results<'_> {
-    /// Writes the reports and, into the folder, the files that a batch ends with. `text` is the report for people who
-    /// look at it now.
+    /// Writes the reports and, into the folder, the files at the end of a batch. `text` is the report for a terminal.
     ///
     /// # Errors
     /// The first file that can't be written; the others are written all the same.
@@ -136,7 +135,7 @@ impl Results<'_> {
                 ("grades.jsonl", &lines),
                 ("class.txt", &class),
             ];
-            // All cores write: of a large class this is what the jobs would wait for.
+            // All cores write: for a large class the jobs would wait for this.
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
             let write_pages = |pages: &Pages| made("the pages", || pages.write(grades, passed_over, self.reader));
@@ -182,7 +181,7 @@ impl Results<'_> {
 }
 
 impl<'a> Results<'a> {
-    /// Returns the grades with no more in them than this format tells the reader.
+    /// Returns the grades with only what this format shows the reader.
     fn visible_grades(&self, format: Format) -> Cow<'a, [Grade]> {
         let told = |grade: &'a Grade| format.visible_part(grade, self.reader, self.platform_hides);
         if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
@@ -197,7 +196,7 @@ fn is_step_summary(file: &Path) -> bool {
     std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
 }
 
-/// Makes a text and adds it to what a file holds already.
+/// Makes a text and appends it to a file.
 fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = made(&file.display().to_string(), text)?;
     let opened = open_for_writing(fs::OpenOptions::new().create(true).append(true), file);
@@ -218,7 +217,7 @@ fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<
     output::write_at(&place, text.as_bytes())
 }
 
-/// Returns a text, or what the grader failed on while it made it.
+/// Returns a text, or the fault that the grader had while making it.
 fn made<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
     guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }

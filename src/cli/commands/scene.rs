@@ -42,7 +42,7 @@ fn show(name: &str) -> Result<()> {
     if let Some(xml) = library::scene(name) {
         return console::print(xml);
     }
-    // A name without its group is as good when there is only one of it.
+    // A name without its group suffices if it is unique.
     let same: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
         (Some(xml), 1) => console::print(xml),

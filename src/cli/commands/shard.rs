@@ -1,5 +1,4 @@
-//! A part of a grading that was shared out among machines: which submissions are its own, and what it leaves for
-//! `merge`.
+//! A part of a grading that was shared out among machines: its own submissions, and its results for `merge`.
 use crate::{
     cli::{
         arguments::grade::{GradeArguments as Arguments, MOST_SHARDS, ShardArgument},
@@ -15,13 +14,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The file that tells that a shard is done, and how it ended.
+/// The file that marks a shard as done, with its exit code.
 const FILE: &str = "shard.json";
 
-/// A larger one is not read: ten thousand submissions of 85 scenes that are all wrong leave half of it.
+/// The size of the largest file that is read: ten thousand submissions of 85 scenes that are all wrong leave half of
+/// it.
 const LARGEST: u64 = 4 << 30;
 
-/// The version of what stands in it.
+/// The version of the file's content.
 const SCHEMA: u32 = 1;
 
 /// The inputs that all shards of one grading share.
@@ -36,7 +36,7 @@ pub(super) struct SharedInputs {
     pub(super) of: usize,
     /// The suite's name.
     pub(super) suite: String,
-    /// All that results depend on besides the programs, digested.
+    /// The digest of all that results depend on in addition to the programs.
     plan: String,
     /// The names of all submissions, in the order of an unshared grading.
     pub(super) submissions: Vec<String>,
@@ -74,7 +74,7 @@ pub(super) struct Part {
 }
 
 impl Part {
-    /// Reads what a shard left in a folder; nothing when it is none, or is not done.
+    /// Reads a shard's results in a folder; `None` if it has none, or is not done.
     ///
     /// # Errors
     /// When it can't be read, or was left by another version.
@@ -85,7 +85,7 @@ impl Part {
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
-        // Read as a stream: what is no JSON ends at its first byte, however long it is.
+        // Read as a stream: a file that is not JSON ends at its first byte, however long it is.
         let part: Self = serde_json::from_reader(BufReader::new(opened))
             .with_context(|| format!("{} is damaged, or another version's: grade this shard again", file.display()))?;
         part.check()
@@ -116,7 +116,7 @@ impl Part {
 }
 
 /// Returns a shard's own entries of a list: every N-th one. Neighbors in the alphabet may have worked together and
-/// share slow programs; so they go to different machines.
+/// share slow programs, so they are sent to different machines.
 fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }

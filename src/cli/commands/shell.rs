@@ -19,9 +19,9 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
     console::print(&script)
 }
 
-/// Returns a bash script whose labels are those that it asks for. clap writes a hyphen in the program's name once as
-/// `__` and once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a
-/// hyphen, or when clap is mended, nothing changes.
+/// Returns a bash script whose labels match their uses. clap writes a hyphen in the program's name once as `__` and
+/// once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a hyphen, or
+/// when clap is mended, nothing changes.
 fn mended(script: &[u8]) -> Vec<u8> {
     let (asked, written) = (NAME.replace('-', "__"), NAME.replace('-', "__subcmd__"));
     String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
@@ -29,7 +29,7 @@ fn mended(script: &[u8]) -> Vec<u8> {
 
 pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
-    // Gives the commands their full names.
+    // Sets the full names of the commands.
     command.build();
     for name in &arguments.command {
         let Some(found) = command.find_subcommand(name) else {
@@ -43,7 +43,7 @@ pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
         command = found.clone();
     }
     let mut page = Vec::new();
-    // The foot of a page tells the version; of a command clap knows none.
+    // The foot of a page has the version; clap knows none for a command.
     let source = format!("{NAME} {}", env!("CARGO_PKG_VERSION"));
     clap_mangen::Man::new(command).source(source).manual("Manual of fosssim-oracle").render(&mut page)?;
     let page = String::from_utf8_lossy(&page).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES AND NOTES\n");

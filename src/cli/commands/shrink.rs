@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
             console::print(ExplainedPage { diagnosis: &diagnosis, cards }.html())?;
         }
     }
-    // After an interruption the best so far was told.
+    // After an interruption the best scene so far was reported.
     Ok(if program.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit::NOT_ACCEPTED })
 }
 
@@ -94,7 +94,7 @@ fn numbered(name: &Path, number: usize) -> std::path::PathBuf {
     name.with_file_name(format!("{}-{}{extension}", stem.to_string_lossy(), number + 1))
 }
 
-/// Adds the smallest scene for each cause, and its card, to what is said of a program.
+/// Adds the smallest scene for each cause, and its card, to a program's report.
 pub(super) fn add_smallest(
     program: &ProgramUnderTest,
     examined: &mut ExaminedProgram,
@@ -131,8 +131,8 @@ pub(super) fn add_smallest(
     Ok(())
 }
 
-/// Returns what is to be said of a smallest scene in a grade, with its cards among the pages'. Staff and students are
-/// told this much.
+/// Returns the report on a smallest scene in a grade, with its cards among the pages'. The hints are those of staff and
+/// students.
 pub(super) fn graded(small: &ShrunkScene, program: &str, hints: [Hints; 2], pages: Option<&Pages>) -> SmallestScene {
     let has_pictures = pages.is_some();
     let [(mut for_staff, card), (_, own)] =
@@ -142,7 +142,7 @@ pub(super) fn graded(small: &ShrunkScene, program: &str, hints: [Hints; 2], page
     for_staff
 }
 
-/// Returns what is to be said of a smallest scene, and its card.
+/// Returns the report on a smallest scene, and its card.
 fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
     let ShrunkScene { reason, origin, small: SmallScene { scene, runs, is_minimal }, seen, .. } = small;
     let note = FailureKind::from_end(&seen.ended).map(|_| format!("the program {}", seen.ended));
@@ -177,12 +177,12 @@ fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestSc
     (told, card)
 }
 
-/// Puts the cause before what else would explain the run; its example is that of the run.
+/// Puts the cause before other explanations of the run; its example is the run's.
 fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
     let own = case.explanations.iter().position(|one| is_named_in(cause, std::slice::from_ref(one)));
     let own = own.map(|place| case.explanations.remove(place)).or_else(|| case.explanations.first().cloned());
     let lead = match own {
-        // Its counts are those of the run.
+        // Its counts are the run's.
         Some(own) if matches!(cause.about, About::Pairs(_)) => own,
         own => {
             let example = own.and_then(|own| own.example);
@@ -192,7 +192,7 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
     case.explanations.splice(0..0, cut(hints, vec![lead]));
 }
 
-/// Returns the values that differ, and the pair that tells most: that of the first finding, else one that collides,
+/// Returns the values that differ, and the most informative pair: that of the first finding, else one that collides,
 /// else the first.
 fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
     let scene = &small.small.scene;
@@ -218,7 +218,7 @@ fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
     (check.steps_text(Style::Plain), first.or_else(|| pairs(scene).iter().next()))
 }
 
-/// Returns what the reference computes for a pair in a scene of one step, beside what the trace has of it.
+/// Returns the reference's computation for a pair in a scene of one step, next to the trace's numbers.
 fn by_hand(small: &ShrunkScene, pair: Pair) -> Option<String> {
     let scene: &Scene = &small.small.scene;
     let layout = Layout::for_scene(scene);
@@ -239,7 +239,7 @@ fn by_hand(small: &ShrunkScene, pair: Pair) -> Option<String> {
     Some(Detect { study: call.study.as_ref().ok()?, place: Some(place) }.text(Style::Plain))
 }
 
-/// Returns the records of a trace, as far as they can be read.
+/// Returns the readable records of a trace.
 fn frames(trace: &[u8], layout: Layout) -> Vec<Frame> {
     let mut reader = Reader::from_slice(trace, layout);
     let mut frames = Vec::new();

@@ -24,7 +24,7 @@ const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 /// The reason why a folder of results is no submission.
 const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 
-/// A class has no more entries.
+/// The greatest number of a class's entries.
 const MOST_ENTRIES: usize = 100_000;
 
 /// The submissions of a command line, and entries that are none.
@@ -35,7 +35,7 @@ pub(super) struct FoundSubmissions {
 
 /// A submission that has no name yet.
 struct Entry {
-    /// The place where it lies.
+    /// The place of the submission.
     path: PathBuf,
     /// The folder, or the file itself.
     folder: PathBuf,
@@ -45,10 +45,10 @@ struct Entry {
     is_folder: bool,
 }
 
-/// Where submissions are looked for, and what is none.
+/// A search for submissions, with the entries that are none.
 pub(super) struct Search<'a> {
     arguments: &'a GradeArguments,
-    /// How the suite builds.
+    /// The build of the suite.
     build: Option<&'a BuildStep>,
     /// The folder for results.
     output: &'a Path,
@@ -94,14 +94,14 @@ impl<'a> Search<'a> {
         Ok(FoundSubmissions { submissions, passed_over })
     }
 
-    /// Returns the submission that a folder is: its sources when they are to be built, else the program inside. A
-    /// program that is missing is the submission's fault: its grade says so.
+    /// Returns the submission in a folder: its sources if the suite builds them, else the program inside. A missing
+    /// program is the submission's fault: its grade says so.
     fn folder(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
-    /// Returns whether a folder is a submission itself: it holds the program, or what the suite's build begins with.
+    /// Returns whether a folder is a submission itself: it holds the program, or the first file of the suite's build.
     fn is_one(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };
@@ -122,9 +122,8 @@ impl<'a> Search<'a> {
         same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
     }
 
-    /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are passed
-    /// over with a word about each: hidden ones, results of gradings, and links, which could lead to another's
-    /// submission.
+    /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are reported
+    /// and skipped: hidden ones, results of gradings, and links, which could lead to another's submission.
     fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
         let paths = listed(folder, MOST_ENTRIES)?;
         let holds_results = self.is_results(folder);
@@ -187,8 +186,8 @@ fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Returns why a file in a class's folder is no submission. A file that may be executed is one, and so is one that
-/// begins as a program or an archive: learning platforms keep no permissions.
+/// Returns why a file in a class's folder is no submission. Executable files are submissions, and so are files that
+/// begin as programs or archives: learning platforms keep no permissions.
 fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
@@ -201,7 +200,7 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
         file.take(fosssim_intake::START as u64).read_to_end(&mut start).map_err(|error| error.to_string())
     });
     match (read, FileKind::from_start(&start)) {
-        // Its grade tells what keeps it from being read.
+        // Its grade reports why it can't be read.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
             let found = fosssim_intake::described(&start);
@@ -244,9 +243,9 @@ fn last_name(path: &Path) -> OsString {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
-/// Returns the names of what lies at these paths, none twice: the last names; where several of these look the same,
-/// those that only look so are shown exactly, equal ones get as much of their paths as it takes, and names that still
-/// look the same get a number.
+/// Returns distinct names for these paths: the last names. If several of these look the same, names that only look
+/// equal are shown exactly, equal names get as many of their folders as needed, and names that still look the same get
+/// a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();

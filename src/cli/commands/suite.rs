@@ -37,7 +37,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
     }
 }
 
-/// Returns a commented suite with the groups of one that comes with the program.
+/// Returns a commented suite with the groups of an embedded one.
 fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::template(&name).with_context(|| {
@@ -51,7 +51,7 @@ fn built_in() -> Result<Vec<(String, plan::Plan)>> {
     plan::built_in_names().map(|name| plan::find(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
 
-/// Runs the reference on every scene, on all cores, and keeps those with something to say.
+/// Runs the reference on every scene, on all cores, and keeps those with undecided ones.
 fn undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().map(|task| (task.name.clone(), borderline(&task.scene)));

@@ -1,5 +1,4 @@
-//! The text of `suite check`: what a suite would grade, and what is worth knowing before it does. And which suites
-//! there are.
+//! The text of `suite check`: the contents of a suite, and facts to know before it grades. Also the list of suites.
 use super::suite_sight::{ENOUGH, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
@@ -20,7 +19,7 @@ use crate::{
 use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
-/// A scene and those of the reference's decisions that round-off may flip, or why it has no run.
+/// A scene and those of the reference's decisions that round-off may flip, or the reason why it has no run.
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
 /// The greatest number of decisions listed of a scene.
@@ -33,11 +32,11 @@ pub(super) struct SuiteContents {
     pub(super) coverage: Coverage,
     /// Whether each missing pair of properties has a line.
     pub(super) lists_missing: bool,
-    /// The mistakes that no scene shows, by parts of a program's work; empty where nobody asks.
+    /// The mistakes that no scene shows, by parts of a program's work; empty unless requested.
     pub(super) parts: Vec<SeenPart>,
 }
 
-/// Renders the whole report; `undecided` holds the scenes of which there is something to say.
+/// Renders the whole report; `undecided` holds the scenes with borderline decisions.
 pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
@@ -182,7 +181,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     text
 }
 
-/// Returns how much of what can happen in steps the scenes contain; nothing for scenes of earlier assignments.
+/// Returns the share of possible events in steps that the scenes contain; nothing for scenes of earlier assignments.
 fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {

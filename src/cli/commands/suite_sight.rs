@@ -8,10 +8,10 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// A step of a program that goes on for ever has more polynomials than this.
+/// The number of polynomials in a step after which a program counts as endless.
 const MOST_POLYNOMIALS: usize = 1 << 20;
 
-/// Larger scenes, which are there to be timed, are left out: smaller ones show what they show.
+/// Larger scenes, which exist for timing, are left out: smaller ones show the same.
 const MOST_PARTICLES: usize = 2_000;
 
 /// A part of a program's work, of which the scenes show something.
@@ -21,9 +21,9 @@ pub(super) struct SeenPart {
     pub(super) area: Area,
     /// The number of its mistakes that a scene of the suite could show.
     pub(super) all: usize,
-    /// Those with which the sample program writes the same traces as without, on every scene.
+    /// Mistakes with which the sample program writes the same traces as without, on every scene.
     pub(super) unseen: Vec<&'static str>,
-    /// Those that fewer than [`ENOUGH`] scenes show: a small change of one scene could hide them.
+    /// Mistakes that fewer than [`ENOUGH`] scenes show: a small change of one scene could hide them.
     pub(super) rare: Vec<&'static str>,
 }
 
@@ -37,7 +37,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
     scenes.retain(|scene| scene.particles.len() <= MOST_PARTICLES);
-    // Small ones first: most mistakes show in the first scenes.
+    // Small scenes first: most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
     let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));

@@ -1,4 +1,4 @@
-//! The table of `grade --timings`: where the processor time of a grading went.
+//! The table of `grade --timings`: the processor time of each part of a grading.
 use crate::{
     cli::console,
     report::{

@@ -1,5 +1,5 @@
-//! `grade --traces`: judges traces that are there already, a folder of them for each submission. Nothing is run, so
-//! that no sandbox is needed; how long a program took, and that it ended well, nobody knows.
+//! `grade --traces`: judges existing traces, a folder of them for each submission. No program runs, so that no sandbox
+//! is needed; the program's time, and whether it ended well, are unknown.
 use super::{
     compare,
     ending::{HARDEST, exit_code, shown, text},
@@ -145,9 +145,9 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     Ok((result, passed_over))
 }
 
-/// Reads the trace of a scene, under its whole name or the name behind its group, plain or packed. Nothing when there
-/// is none, and then in words what lies there that can't be used: what is no file, is damaged, or is reached by a link,
-/// as another's may be. More than `most` bytes are not read: what is cut there is a bad trace.
+/// Reads the trace of a scene, under its whole name or the name behind its group, plain or packed. Without a usable
+/// trace it describes what is there instead: something else than a file, a damaged file, or one that is reached by a
+/// link, as another's may be. No more than `most` bytes are read: a longer trace is cut, and bad.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);

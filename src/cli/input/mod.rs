@@ -1,7 +1,7 @@
 //! Inputs: scenes and traces by path, from standard input, or from the embedded library.
 //!
-//! Nothing here waits for ever: a named pipe that nobody writes to is refused. Nothing is read whole but scenes, whose
-//! size is limited; traces are streams, decompressed on the way when they are zstd files.
+//! Nothing here waits forever: a named pipe without a writer is rejected. Only scenes are read whole, and their size is
+//! limited; traces are streams, decompressed on the way when they are zstd files.
 
 pub(super) mod pair;
 mod scene;
@@ -38,7 +38,7 @@ fn no_asset(what: &str, name: &str) -> String {
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
 
-/// Returns a file that is not there, but would be what comes with the program, had it `asset:` before its name.
+/// Returns an error for a missing file whose name with `asset:` before it is that of an embedded one.
 fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
     match known
@@ -49,7 +49,7 @@ fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     }
 }
 
-/// Opens a file without waiting for a pipe's other end. Directories are refused.
+/// Opens a file without waiting for a pipe's other end. Directories are rejected.
 pub(super) fn open(name: &Path) -> Result<(File, Metadata)> {
     let (file, metadata) = open_for_reading(name).map_err(|error| or_asset(name, error))?;
     if metadata.is_dir() {

@@ -50,7 +50,7 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
 /// Returns a pair of a scene: `pe:3,1`.
 ///
 /// # Errors
-/// When the scene has no such pair, or detection never looks at it.
+/// When the scene has no such pair, or detection never checks it.
 pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
     let kind = kind_of(kind)?;
@@ -71,7 +71,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let second = index(second, count, kind.second())?;
     match kind {
         PairKind::ParticleParticle if first == second => bail!("a particle makes no pair with itself"),
-        // Detection looks at each pair once, the lower index first.
+        // Detection checks each pair once, the lower index first.
         PairKind::ParticleParticle => Ok(Pair { kind, first: first.min(second), second: first.max(second) }),
         PairKind::ParticleEdge => {
             let edge = &scene.edges[second as usize];
@@ -98,7 +98,7 @@ fn kind_of(word: &str) -> Result<PairKind> {
 /// Returns a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
 ///
 /// # Errors
-/// When it is none of them.
+/// When it has none of these forms.
 fn moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
         // The displacement is the difference of the ends, as the course's code takes it.

@@ -1,4 +1,4 @@
-//! Scenes as inputs: strict reading, all problems at once.
+//! Scenes as inputs: strict reading, all problems together.
 use super::{asset, no_asset, open, shown, trace::ZSTD_MAGIC};
 use crate::files::{Identity, read_limited};
 use crate::{
@@ -17,11 +17,11 @@ pub(in crate::cli) struct SceneInput {
     pub(in crate::cli) name: String,
     /// The scene.
     pub(in crate::cli) scene: scene::Scene,
-    /// The file, when there is one.
+    /// The file, if there is one.
     pub(in crate::cli) identity: Option<Identity>,
 }
 
-/// Reads a scene and complains about what is odd in it.
+/// Reads a scene and warns of oddities in it.
 ///
 /// # Errors
 /// When it can't be read, or has errors: all of them, with their places.
@@ -54,8 +54,8 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     }
 }
 
-/// Returns whether these bytes are no text at all: what its reader could say of them would help nobody. No XML in UTF-8
-/// holds a NUL; UTF-16, which does, begins with its mark and gets the reader's own words.
+/// Returns whether these bytes are no text at all: the reader's messages about them would not help. No XML in UTF-8
+/// holds a NUL; UTF-16, which does, begins with its mark and gets the reader's own message.
 fn is_binary(bytes: &[u8]) -> bool {
     let is_utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
     bytes.starts_with(&ZSTD_MAGIC) || (!is_utf_16 && !bytes.starts_with(b"<") && bytes.contains(&0))

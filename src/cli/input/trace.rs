@@ -21,7 +21,7 @@ pub(in crate::cli) struct TraceInput {
     pub(in crate::cli) name: String,
     /// The trace's bytes, decompressed.
     pub(in crate::cli) reader: Box<dyn Read + Send>,
-    /// The file, when there is one.
+    /// The file, if there is one.
     pub(in crate::cli) identity: Option<Identity>,
     /// The kind of file that it seems to be, if it can't be a trace.
     pub(in crate::cli) looks_like: Option<&'static str>,
@@ -35,10 +35,10 @@ impl TraceInput {
         self.failure.get()
     }
 
-    /// Ends with an error where reading failed.
+    /// Returns an error if reading failed.
     ///
     /// # Errors
-    /// As [`TraceInput::failure`] says.
+    /// As for [`TraceInput::failure`].
     pub(in crate::cli) fn ensure_not_failed(&self) -> Result<()> {
         match self.failure() {
             Some(message) => bail!("cannot read the trace {}: {message}", self.name),
@@ -46,7 +46,7 @@ impl TraceInput {
         }
     }
 
-    /// Reads its records, as those of a trace of this scene.
+    /// Reads its records, as a trace of this scene.
     pub(in crate::cli) fn records(&mut self, scene: &Scene) -> Reader<&mut Box<dyn Read + Send>> {
         Reader::new(&mut self.reader, Layout::for_scene(scene)).with_scene(scene)
     }
@@ -85,7 +85,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?, None)
     } else {
-        // A slip of the user, and no wrong trace: refused where name and content agree.
+        // A slip of the user, and no wrong trace: rejected if name and content agree.
         if is_scene(name) {
             bail!("{shown} is a scene, not a trace: SCENE comes first, then TRACE");
         }
@@ -116,7 +116,7 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     false
 }
 
-/// Remembers what the operating system said when reading failed.
+/// Remembers the operating system's error when reading failed.
 struct WatchedReader {
     reader: Box<dyn Read + Send>,
     failure: Failure,
@@ -135,8 +135,8 @@ impl Read for WatchedReader {
 /// The first bytes of every zstd frame.
 pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Frames that need a larger window than 8 MiB are refused: memory stays bounded. The window is the packer's choice and
-/// most of what unpacking needs: 2 MiB at zstd's usual level 3, 8 MiB at level 19. A smaller bound would refuse the
+/// Frames that need a larger window than 8 MiB are rejected: memory stays bounded. The window is the packer's choice
+/// and most of what unpacking needs: 2 MiB at zstd's usual level 3, 8 MiB at level 19. A smaller bound would refuse the
 /// latter, with which recordings are packed.
 const ZSTD_WINDOW: u32 = 23;
 
@@ -187,8 +187,8 @@ fn decompressed(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -
     Ok(Box::new(UnpackedReader { decoder, format: "zstd", failure: failure.clone() }))
 }
 
-/// A decoder whose errors say what is wrong with the file, and are remembered: a copy that was damaged on its way says
-/// nothing about the trace. Bytes behind the last zstd frame that do not begin another one are damage, too.
+/// A decoder whose errors describe the fault of the file, and are remembered: a damaged copy proves nothing about the
+/// trace. Bytes behind the last zstd frame that do not begin another one are damage, too.
 struct UnpackedReader<R> {
     decoder: R,
     format: &'static str,

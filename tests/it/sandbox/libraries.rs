@@ -1,7 +1,7 @@
 //! The needs of the course's programs from the system's libraries.
 use super::*;
 
-/// Compiles a source that a bench holds; `None` where there is no such compiler or library.
+/// Compiles a source that a bench holds; `None` if there is no such compiler or library.
 fn built(bench: &Bench, source: &str, words: &[&str]) -> Option<PathBuf> {
     let path = bench.folder.path().join("source.cpp");
     std::fs::write(&path, source).unwrap();

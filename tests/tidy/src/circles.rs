@@ -207,7 +207,7 @@ impl Room {
         Self(modules)
     }
 
-    /// The module whose file defines what a path names in another; none where that is in another crate.
+    /// The module whose file defines what a path names in another; none if that is in another crate.
     fn resolve(&self, module: &[String], path: &[String], depth: usize) -> Option<Module> {
         let (first, rest) = path.split_first()?;
         match first.as_str() {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 /// The subject of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum About {
-    /// A mistake of the catalogue, the one of this key.
+    /// A mistake of the catalogue, with this key.
     Mistake,
     /// Stages that are not written yet; their keys are in [`Explanation::same_as`](super::Explanation::same_as).
     Unfinished,
@@ -27,11 +27,11 @@ pub enum About {
         /// The facts that are found out about them.
         found: OfPolynomials,
     },
-    /// A stage of a step: what it leaves is wrong, and everything before is right.
+    /// A stage of a step: its results are wrong, and everything before is right.
     Stage(StageFault),
     /// Near pairs that a contest's search leaves out or reports twice: an observation.
     Pairs(WrongPairs),
-    /// Values that are no finite numbers: an observation, which comes before all guesses.
+    /// Values that are not finite numbers: an observation, which comes before all guesses.
     NotFinite(NotFinite),
 }
 
@@ -51,7 +51,7 @@ pub enum OfPolynomials {
     Guess(Guess),
     /// The polynomials are not handed over.
     Missing,
-    /// The polynomials are right but for too much round-off.
+    /// The polynomials are right except for too much round-off.
     NearlyRight,
     /// Nothing.
     Nothing,

@@ -2,7 +2,7 @@
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The part of the assignment to which a mistake belongs. Listings have its name in JSON.
+    /// The part of the assignment to which a mistake belongs. Listings print its name in JSON.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Area {
@@ -10,7 +10,7 @@ fosssim_num::closed_set! {
         Forces = "Forces", "Look at what each force adds to the gradient, for each of its particles.";
         /// Derivatives of forces by positions and velocities, for implicit integrators.
         Jacobians = "Derivatives of forces", "Look at what each force adds to the second derivatives, block by block.";
-        /// How forces change velocities, and velocities positions.
+        /// The change of velocities by forces, and of positions by velocities.
         Integrator = "Integrator",
             "Look at the order in which a step changes velocities and positions, and at what it reads.";
         /// The force between near bodies.
@@ -30,10 +30,10 @@ fosssim_num::closed_set! {
             "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type.";
         /// The vector between the objects at the time of impact.
         ContactVector = "Contact vector", "Look at what the detection returns once the time of impact is known.";
-        /// Which times count, and which pairs are looked at.
+        /// The choice of the times that count, and of the pairs that are checked.
         Decision = "Detection",
             "Look at which pairs are tested, and at what is done with the time that the root finder returns.";
-        /// When bodies that overlap at the end of a step collide, and the vector between them.
+        /// The condition under which bodies that overlap at the end of a step collide, and the vector between them.
         SimpleDetection = "Detection",
             "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns.";
         /// The impulse of one contact.
@@ -51,9 +51,9 @@ fosssim_num::closed_set! {
         Failsafe = "Rigid failsafe", "Look at how one zone is moved as a rigid body, and when it stops instead.";
         /// The trace that is written.
         Trace = "Trace", "Look at what is written to the trace, and when; the simulation itself may be right.";
-        /// How the program behaves as a process.
+        /// The behavior of the program as a process.
         Process = "Program", "Look at how the program starts and ends.";
     }
-    /// Returns one sentence that says where in the program the mistake is made, without the right formula.
+    /// Returns one sentence with the place of the mistake in the program, without the right formula.
     advice
 }

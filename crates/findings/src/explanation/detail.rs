@@ -1,4 +1,4 @@
-//! The exact form of what is wrong, as values. May give a right formula away.
+//! The exact form of a fault, as values. It may give a right formula away.
 use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
@@ -9,10 +9,10 @@ use std::borrow::Cow;
 pub enum Detail {
     /// The exact form of the catalogue's mistake with this key.
     Term(Cow<'static, str>),
-    /// Where to look for mistakes of this part of the assignment.
+    /// The place to check for mistakes of this part of the assignment.
     Look(Area),
-    /// The meanings of the letters in the lines before, which speak of pairs of these kinds. None where none needs
-    /// it.
+    /// The meanings of the letters in the lines before, which speak of pairs of these kinds. There is none if no letter
+    /// needs it.
     Letters(Vec<PairKind>),
     /// A fault of polynomials.
     Polynomial(PolynomialDetail),
@@ -20,7 +20,7 @@ pub enum Detail {
     Stage(StageDetail),
 }
 
-/// The exact form of what is wrong with polynomials.
+/// The exact form of a fault of polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PolynomialDetail {
     /// Each detection logs another number of polynomials than it should.
@@ -49,21 +49,21 @@ pub enum PolynomialDetail {
     Every(#[serde(with = "fosssim_num::written")] f64),
     /// Every coefficient is a number of single precision.
     SinglePrecision,
-    /// A polynomial stands in another one's place.
+    /// One polynomial is used instead of another.
     InPlaceOf {
-        /// The one that stands there.
+        /// The polynomial that is used.
         stands: Subject,
-        /// The one that belongs there.
+        /// The polynomial that must be used.
         belongs: Subject,
     },
-    /// The coefficients of two powers of t stand in each other's places.
+    /// The coefficients of two powers of t are exchanged.
     Exchanged {
         /// The powers.
         powers: [usize; 2],
     },
-    /// Only this number of coefficients is there, the last ones.
+    /// Only the last coefficients are there, this number of them.
     LastOnly(usize),
-    /// Only this number of coefficients is there, the first ones.
+    /// Only the first coefficients are there, this number of them.
     FirstOnly(usize),
     /// Every displacement carries this factor.
     Displacements(#[serde(with = "fosssim_num::written")] f64),
@@ -76,7 +76,7 @@ pub enum PolynomialDetail {
     },
     /// The exact form of the misunderstanding with this key.
     Special(Cow<'static, str>),
-    /// Something else stands for a letter of a formula.
+    /// Something else is used for a letter of a formula.
     StandsFor {
         /// The formula.
         reading: Reading,
@@ -100,7 +100,7 @@ pub enum PolynomialDetail {
     },
     /// A product has the wrong weight.
     Weight(Weight),
-    /// These weights together would do the same.
+    /// These weights together would have the same effect.
     Alternative(Vec<Weight>),
 }
 
@@ -115,7 +115,7 @@ pub enum Substitute {
     Dot {
         /// The vectors' names.
         vectors: [Cow<'static, str>; 2],
-        /// Whether its sign is the other one.
+        /// Whether its sign is wrong.
         negated: bool,
     },
     /// The number 1.
@@ -139,7 +139,7 @@ pub struct Weight {
     pub actual: f64,
 }
 
-/// The exact form of what is wrong with a stage.
+/// The exact form of a fault of a stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum StageDetail {
     /// The order of the pairs.
@@ -150,20 +150,20 @@ pub enum StageDetail {
     Impacts {
         /// Whether these are the contacts that are right.
         right: bool,
-        /// How many contacts.
+        /// The number of contacts.
         count: usize,
         /// The first time.
         #[serde(with = "fosssim_num::written")]
         low: f64,
-        /// The last one.
+        /// The number of the last.
         #[serde(with = "fosssim_num::written")]
         high: f64,
     },
-    /// Contact vectors along the right ones, over what they should be.
+    /// The ratios of contact vectors to the right ones, along these.
     Vectors(Ratios),
     /// By how much of their length contact vectors are off at most.
     VectorsOff(#[serde(with = "fosssim_num::written")] f64),
-    /// Times of impact over what they should be.
+    /// The ratios of times of impact to the expected ones.
     Times(Ratios),
     /// By how much times of impact are off, in steps.
     TimesOff(#[serde(with = "fosssim_num::written")] f64),
@@ -171,7 +171,7 @@ pub enum StageDetail {
     TimesUsed,
     /// Detection passes of impulse rounds.
     Passes {
-        /// How many there should be.
+        /// The number that is expected.
         expected: usize,
         /// The number of them.
         actual: usize,
@@ -200,11 +200,11 @@ pub enum StageDetail {
     },
     /// Velocities of zones that must stop, divided by those before.
     Stopped(Ratios),
-    /// How far the center of mass moves, over how far it should.
+    /// The ratio of the motion of the center of mass to the expected one.
     CenterMoves(Ratios),
     /// The direction of the center's motion.
     CenterDirection,
-    /// How far zones turn, over how far they should.
+    /// The ratio of the rotation of zones to the expected one.
     Turns(Ratios),
     /// Velocities of zones over their motion per step size.
     Velocities(Ratios),
@@ -217,15 +217,15 @@ pub enum Amount {
     Unwanted,
     /// As it should along the contact vector.
     Right,
-    /// Over what it should be along the contact vector.
+    /// The ratio to the expected value along the contact vector.
     Ratio(Ratios),
 }
 
-/// Ratios of what is to what should be.
+/// Ratios of actual to expected values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Ratios {
-    /// All are this.
+    /// All ratios are this number.
     All(#[serde(with = "fosssim_num::written")] f64),
-    /// The ratios lie between the first and the second.
+    /// The ratios are between the first number and the second.
     Between(#[serde(with = "fosssim_num::written")] f64, #[serde(with = "fosssim_num::written")] f64),
 }

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub struct Example {
     /// Step, from 1.
     pub step: u32,
-    /// Where in the step.
+    /// The place in the step.
     pub place: ExamplePlace,
     /// The inputs, in the assignment's notation.
     pub given: Vec<ExampleValue>,
@@ -21,7 +21,7 @@ pub struct Example {
     pub actual: Vec<f64>,
 }
 
-/// Where in its step an example lies, and so what its numbers are.
+/// The place of an example in its step, which decides what its numbers are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ExamplePlace {
     /// A polynomial whose inputs are given: its coefficients.
@@ -73,7 +73,7 @@ pub enum ExamplePlace {
 /// A record of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StepRecord {
-    /// The one in the middle.
+    /// The mid record.
     Mid,
     /// The one at the end.
     End,

@@ -1,10 +1,10 @@
-//! Faults of a stage of a step, where no mistake that is known explains them; without what is measured of them
+//! Faults of a stage of a step that no known mistake explains, without their measured values
 //! ([`StageDetail`](super::StageDetail)).
 use super::area::Area;
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
-/// The stages of a step that can be told apart, in their order.
+/// The stages of a step that can be distinguished, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum StepStage {
     /// Which pairs collide, and when.
@@ -20,7 +20,7 @@ pub enum StepStage {
 /// The fault of a stage whose inputs are right.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StageFault {
-    /// The pairs are looked at in another order.
+    /// The pairs are checked in another order.
     Order,
     /// Polynomials are right, decisions are not.
     Decisions {
@@ -60,23 +60,23 @@ pub enum StageFault {
     ManyContacts,
     /// Contacts of the first impulse round change nothing.
     Unresolved {
-        /// None of them does.
+        /// No ratio does.
         all: bool,
     },
     /// The number of impulse rounds.
     Rounds(WrongNumber),
     /// The values that the impulse rounds hand over; the rounds themselves are right.
     HandedOver {
-        /// Positions or velocities; none where it is both.
+        /// Positions or velocities; `None` for both.
         quantity: Option<Quantity>,
-        /// When it is wrong; none where it is always.
+        /// The end of the loop at which it is wrong; `None` if it is always wrong.
         when: Option<LoopEnd>,
         /// Whether contacts could change it so.
         or_response: bool,
     },
     /// The changes by the contacts of the first impulse round.
     FirstRound,
-    /// The changes by several contacts of the first impulse round, though isolated ones are right.
+    /// The changes by several contacts of the first impulse round, although isolated contacts change them rightly.
     LaterRounds,
     /// Rounds behind the first one detect on the prediction again.
     RoundsOfPrediction,
@@ -92,7 +92,7 @@ pub enum StageFault {
     ZoneRounds(WrongZoneRounds),
     /// Which zones are moved, and which are stopped.
     Zones(WrongZones),
-    /// How zones are moved.
+    /// The motion of zones.
     Motion {
         /// The faults of the motion.
         wrong: Vec<WrongMotion>,
@@ -110,7 +110,7 @@ pub struct WrongChange {
     pub axis: Option<usize>,
     /// The particles.
     pub particles: ChangedParticles,
-    /// How they compare with the expected changes.
+    /// The ratio to the expected changes.
     pub ratio: ChangeRatio,
     /// The student's code that makes such changes.
     pub cause: ChangeCause,
@@ -139,11 +139,11 @@ fosssim_num::closed_set! {
     pub enum ChangedParticles {
         /// Any.
         Any = "",
-        /// Fixed ones only.
+        /// Only fixed particles.
         Fixed = " of fixed particles only",
-        /// The first one only.
+        /// Only the first contact.
         First = " of the first particle only",
-        /// The last one only.
+        /// Only the last contact.
         Last = " of the last particle only",
     }
 }
@@ -185,13 +185,13 @@ fosssim_num::closed_set! {
     /// A fault of contact vectors.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongVectors {
-        /// The vectors are perpendicular to the right ones.
+        /// The vectors are perpendicular to the expected vectors.
         Perpendicular = "it is perpendicular to what it should be",
         /// The vectors have another direction.
         Direction = "it has the wrong direction",
         /// The vectors have no length.
         Zero = "it has no length",
-        /// The vectors are right but for their last digits.
+        /// The vectors are right except for their last digits.
         Inexact = "it is right except for its last digits",
         /// The vectors point the other way round.
         Reversed = "it points the other way round",
@@ -218,8 +218,8 @@ pub enum WrongResponses {
 pub struct ChangedQuantity {
     /// The kind of the contact's pair.
     pub kind: PairKind,
-    /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint, and 2 its
-    /// second one.
+    /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint; 2 is the
+    /// edge's second endpoint.
     pub body: usize,
     /// The quantity.
     pub quantity: Quantity,
@@ -230,12 +230,12 @@ pub struct ChangedQuantity {
 pub enum Quantity {
     /// The place where it is.
     Position,
-    /// How fast it moves.
+    /// The velocity of the body.
     Velocity,
 }
 
 fosssim_num::closed_set! {
-    /// How a number of rounds is wrong.
+    /// The way in which a number of rounds is wrong.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongNumber {
         /// Too few.
@@ -260,10 +260,10 @@ pub enum WrongGeometric {
 }
 
 fosssim_num::closed_set! {
-    /// At which positions the geometric part looks, wrongly.
+    /// The wrong positions that the geometric part uses.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongPositions {
-        /// First of all at those of the integrator.
+        /// The predicted positions of the integrator, in the first round.
         Prediction =
             "the first zones are searched on the predicted positions, not on those that the impulse rounds leave",
         /// First of all at others than those that the impulse rounds leave.
@@ -276,7 +276,7 @@ fosssim_num::closed_set! {
 /// The reason why impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
-    /// All that there may be were made.
+    /// The greatest number of rounds was made.
     RanOut,
     /// Nothing collides any more.
     Settled,
@@ -311,7 +311,7 @@ fosssim_num::closed_set! {
         Stop = "zones stop although nothing in them is fixed",
         /// Contacts that share particles are moved one after the other.
         NotMerged = "zones that share particles are moved one after the other, not as one",
-        /// Zones that share no particle are moved as one.
+        /// Zones that share no particle are moved as one zone.
         Joined = "zones that share no particle are moved as one",
         /// Particles are moved that belong to no zone.
         Others = "zones move particles that are not theirs",
@@ -328,7 +328,7 @@ fosssim_num::closed_set! {
     /// A fault of the motion of zones.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongMotion {
-        /// Where their center of mass goes.
+        /// The motion of the zones' center of mass.
         Center = "the center of mass of a zone does not move as it should",
         /// The distances of their particles.
         Distances = "the particles of a zone do not keep their distances",
@@ -373,7 +373,7 @@ impl StageFault {
         }
     }
 
-    /// Returns the parts of the assignment in which it may lie.
+    /// Returns the parts of the assignment that may hold the mistake.
     #[must_use]
     pub const fn areas(&self) -> &'static [Area] {
         match self {
@@ -470,11 +470,11 @@ impl StageFault {
 /// The values of a trace that are not finite, and their first place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NotFinite {
-    /// The step, from 1; 0 is the first record. None where several traces are told about.
+    /// The step, from 1; 0 is the first record. `None` for several traces.
     pub step: Option<u32>,
     /// The stage that makes them from numbers.
     pub stage: NanStage,
-    /// Whether the first one is NaN, and not infinite.
+    /// Whether the first such value is NaN, and not infinite.
     pub is_nan: bool,
     /// Whether all numbers of a later step are finite again.
     #[serde(default)]
@@ -490,7 +490,7 @@ pub enum NanStage {
     Motion,
     /// The integrator, where it solves a system of equations.
     ImplicitMotion,
-    /// The detection of this kind of pair, as far as that is known: its coefficients.
+    /// The detection of this kind of pair, if that is known: its coefficients.
     Detection(Option<PairKind>),
     /// Contact vectors and times.
     ContactVectors,

@@ -1,4 +1,4 @@
-//! Guesses about wrong polynomials, without what would give a formula away
+//! Guesses about wrong polynomials, without the parts that would give a formula away
 //! ([`PolynomialDetail`](super::PolynomialDetail)).
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -8,15 +8,15 @@ use std::borrow::Cow;
 pub enum Guess {
     /// Something about the whole list of coefficients.
     List(ListGuess),
-    /// Another input stands where one belongs: the exchange of this key, which the assignment has words for.
+    /// One input is used instead of another: the exchange of this key, for which the assignment has words.
     Exchange(Cow<'static, str>),
-    /// A misunderstanding with a formula of its own: the one of this key, which the assignment has words for.
+    /// A misunderstanding with a formula of its own, with this key; the assignment has words for it.
     Special(Cow<'static, str>),
     /// Something about one quantity of the formula.
     Quantity(QuantityGuess),
     /// Something about the coefficients of some powers of t.
     Coefficients {
-        /// Those powers, the highest first.
+        /// The powers of these coefficients, the highest first.
         powers: Vec<usize>,
         /// The guess about them.
         wrong: CoefficientGuess,
@@ -59,25 +59,25 @@ fosssim_num::closed_set! {
     /// A guess about a whole list of coefficients.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ListGuess {
-        /// All are zero, or none is there.
+        /// All coefficients are zero, or there are none.
         AllZero = "all-zero", "All coefficients are zero, or none is logged";
         /// The list holds the same single number everywhere.
         Constant = "constant", "A constant is used instead of the polynomial";
-        /// All are the same number everywhere.
+        /// All coefficients are the same number everywhere.
         AllEqual = "all-equal", "All coefficients are the same constant";
         /// The coefficients are rounded to single precision.
         SinglePrecision = "single-precision", "The coefficients have single precision only";
-        /// The coefficients are divided by the leading one, whatever its sign.
+        /// The coefficients are divided by the leading coefficient, whatever its sign.
         Monic = "monic", "The polynomial is divided by its leading coefficient, whose sign gets lost";
         /// There are more of them than there should be.
         TooLong = "too-long", "The polynomial has too high a degree";
         /// The lowest power comes first.
         Reversed = "reversed", "The coefficients are in the wrong order, lowest power first";
-        /// All have the wrong sign.
+        /// All coefficients have the wrong sign.
         Negated = "negated", "The whole polynomial has the wrong sign";
-        /// The lowest power comes first, and all have the wrong sign.
+        /// The lowest power comes first, and all coefficients have the wrong sign.
         ReversedNegated = "reversed-negated", "The coefficients are in the wrong order and have the wrong sign";
-        /// Two of them stand in each other's places.
+        /// Two coefficients are exchanged.
         TwoExchanged = "two-exchanged", "Two coefficients are exchanged";
         /// A zero follows them.
         TrailingZero = "trailing-zero", "A zero is appended, which raises the degree by one";
@@ -86,12 +86,12 @@ fosssim_num::closed_set! {
         /// The coefficients are those of another polynomial of the pair, with the wrong sign.
         OtherPolynomialNegated = "other-polynomial-negated",
             "A polynomial of the pair is used instead of another one, with the wrong sign";
-        /// Only the constant one is there.
+        /// Only the constant coefficient is there.
         ConstantOnly = "cut",
             "The polynomial is cut to its constant coefficient: it is tested at the start of the step only";
-        /// Leading ones are missing.
+        /// The leading coefficients are missing.
         Cut = "cut", "The polynomial is cut: leading coefficients are missing";
-        /// The last ones are missing.
+        /// The last coefficients are missing.
         CutEnd = "cut-end", "The polynomial is cut: its last coefficients are missing";
         /// Every displacement in them carries the same factor.
         DisplacementScale = "displacement-scale",
@@ -111,7 +111,7 @@ fosssim_num::closed_set! {
         Zero = "A quantity of the formula is zero",
         /// The quantity carries a factor.
         Factor = "A quantity of the formula has a wrong factor",
-        /// Another one stands there.
+        /// The coefficient is another number.
         Other = "Another quantity is used instead of a dot product of the formula",
     }
 }

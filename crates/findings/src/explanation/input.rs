@@ -5,17 +5,17 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Input {
-    /// Where the first body is at the start of the step; of an edge and a particle, the particle.
+    /// The position of the first body at the start of the step; for an edge and a particle, the particle's.
     X1,
-    /// Where the second body is; of an edge and a particle, the edge's first endpoint.
+    /// The position of the second body; for an edge and a particle, that of the edge's first endpoint.
     X2,
-    /// Where the edge's second endpoint is.
+    /// The position of the edge's second endpoint.
     X3,
-    /// How far the first body goes within the step.
+    /// The motion of the first body within the step.
     Dx1,
-    /// How far the second body goes.
+    /// The motion of the second body.
     Dx2,
-    /// How far the edge's second endpoint goes.
+    /// The motion of the edge's second endpoint.
     Dx3,
     /// The first particle's radius.
     R1,
@@ -23,14 +23,14 @@ pub enum Input {
     R2,
     /// The edge's radius.
     Re,
-    /// Where the particle beside a half-plane is at the start of the step.
+    /// The position of the particle near a half-plane at the start of the step.
     X,
-    /// How far it goes within the step.
+    /// The motion of the particle within the step.
     Dx,
     /// A point on the half-plane's boundary.
     P,
     /// The half-plane's normal.
     N,
-    /// The radius of the particle beside it.
+    /// The radius of the particle near the half-plane.
     R,
 }

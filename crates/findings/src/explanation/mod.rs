@@ -34,46 +34,46 @@ use std::collections::BTreeMap;
 pub struct Explanation {
     /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
     pub key: String,
-    /// The mistake, as far as a sentence to the student can tell it without giving a formula away.
+    /// The mistake, with what a sentence to the student can say of it without giving a formula away.
     pub about: About,
     /// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
     pub details: Vec<Detail>,
     /// The number of checked samples that it reproduces to round-off.
     pub reproduced: u64,
-    /// Samples that were looked at: polynomials, or steps.
+    /// The number of samples that were examined: polynomials, or steps.
     pub samples: u64,
     /// One small example.
     pub example: Option<Example>,
-    /// Keys of other known mistakes that reproduce the same samples: this trace can't tell them apart.
+    /// Keys of other known mistakes that reproduce the same samples, so that this trace can't distinguish them.
     pub same_as: Vec<String>,
-    /// Keys of mistakes that the trace speaks against: it does what they say is never done.
+    /// Keys of mistakes that the trace contradicts: it does what a program with these mistakes never does.
     pub denies: Vec<String>,
-    /// All that would make its polynomials as they are, one word each: the polynomial, then the known mistake, or a
-    /// digest of the guess and one of its exact form, which give nothing of them away. The guess that it tells stands
-    /// first. A polynomial that nothing makes has a word without a guess.
+    /// All guesses that would make its polynomials as they are, one word each. A word has the polynomial, then the
+    /// known mistake, or a digest of the guess and one of its exact form, which give nothing away. The guess of the
+    /// explanation comes first. A polynomial that nothing makes has a word without a guess.
     pub claims: Vec<String>,
 }
 
 impl Explanation {
-    /// The key of the question whether a trace is of its scene, which is no explanation: nothing else is said then.
+    /// The key of the question whether a trace is of its scene, which is no explanation: then there is no other.
     pub const OTHER_SCENE: &'static str = "other-scene";
 
-    /// The key of stages that are still empty, told as one.
+    /// The key of stages that are still empty, reported as one.
     pub const UNFINISHED: &'static str = "unfinished";
 
-    /// The key of pairs that are looked at in another order.
+    /// The key of pairs that are checked in another order.
     pub const ORDER: &'static str = StageFault::Order.key();
 
     /// The key of near pairs that a contest's search leaves out or reports twice.
     pub const PAIRS: &'static str = "near-pairs";
 
-    /// The key of what is no finite number.
+    /// The key of values that are not finite numbers.
     pub const NOT_FINITE: &'static str = "not-a-number";
 
     /// The key of what nothing is known to explain.
     pub const UNEXPLAINED: &'static str = "unexplained";
 
-    /// The key of what is right but for too much round-off.
+    /// The key of polynomials that are right except for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
     /// Returns an explanation without any evidence for it yet.
@@ -92,7 +92,7 @@ impl Explanation {
         }
     }
 
-    /// Returns the question whether a trace is of its scene; `has_length` says that at least the number of records is
+    /// Returns the question whether a trace is of its scene; `has_length` states that at least the number of records is
     /// right.
     #[must_use]
     pub fn for_other_scene(has_length: bool) -> Self {
@@ -111,13 +111,14 @@ impl Explanation {
         matches!(self.about, About::Scene { .. })
     }
 
-    /// Returns whether it says from where on there is what is no finite number: at every level of hints but the lowest.
+    /// Returns whether it reports the first value that is not a finite number, which is shown at every level of hints
+    /// but the lowest.
     #[must_use]
     pub const fn is_not_finite(&self) -> bool {
         matches!(self.about, About::NotFinite(_))
     }
 
-    /// Returns whether it is a mistake that reproduces all that was tried of what is wrong.
+    /// Returns whether it is a mistake that reproduces all tried samples.
     #[must_use]
     pub fn is_proven(&self) -> bool {
         self.about == About::Mistake && self.reproduced > 0 && self.is_complete()
@@ -129,13 +130,13 @@ impl Explanation {
         self.about == About::Unfinished
     }
 
-    /// Returns whether it says of polynomials that they are wrong, and has no exact form for it.
+    /// Returns whether it reports wrong polynomials and has no exact form for them.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         self.key == Self::UNEXPLAINED
     }
 
-    /// Returns whether it says that polynomials are not handed over.
+    /// Returns whether it reports polynomials that are not handed over.
     #[must_use]
     pub fn is_of_missing(&self) -> bool {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
@@ -155,7 +156,7 @@ impl Explanation {
         }
     }
 
-    /// Returns the polynomials that it is about, as far as it is about polynomials.
+    /// Returns the polynomials that it is about, if it is about polynomials.
     #[must_use]
     pub fn subjects(&self) -> Vec<Subject> {
         if let About::Polynomials { subjects, .. } = &self.about {
@@ -170,7 +171,7 @@ impl Explanation {
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
-        // A guess that reproduces only a part makes none of them.
+        // A guess that reproduces only a part makes none of the polynomials.
         let is_part =
             matches!(self.about, About::Polynomials { found: OfPolynomials::Guess(_), .. }) && !self.is_complete();
         for (number, claim) in self.claims.iter().enumerate() {
@@ -184,19 +185,19 @@ impl Explanation {
         all
     }
 
-    /// Returns whether it says which stage of a step is wrong, which is an observation and no guess.
+    /// Returns whether it reports which stage of a step is wrong, which is an observation and no guess.
     #[must_use]
     pub fn is_of_stage(&self) -> bool {
         self.stage().is_some()
     }
 
-    /// Returns whether it says no more than that something is wrong with a stage.
+    /// Returns whether it only reports that something is wrong with a stage.
     #[must_use]
     pub const fn is_vague(&self) -> bool {
         matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
     }
 
-    /// Returns the stage of a step that it says is wrong.
+    /// Returns the stage of a step that it reports as wrong.
     #[must_use]
     pub fn stage(&self) -> Option<StepStage> {
         match &self.about {
@@ -205,13 +206,13 @@ impl Explanation {
         }
     }
 
-    /// Returns whether it reproduces everything that was looked at.
+    /// Returns whether it reproduces everything that was examined.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.reproduced == self.samples && self.samples > 0
     }
 
-    /// Returns whether it says something of the program that other traces may say, too.
+    /// Returns whether it describes the program, so that other traces may confirm it.
     #[must_use]
     pub fn is_vote(&self) -> bool {
         use OfPolynomials::{NearlyRight, Nothing};
@@ -219,7 +220,7 @@ impl Explanation {
         !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
-    /// Returns whether it explains all that it is about, as far as that can be.
+    /// Returns whether it explains all that it is about, if that is possible.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.is_complete() || self.is_of_stage()

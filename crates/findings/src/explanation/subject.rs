@@ -12,9 +12,9 @@ fosssim_num::closed_set! {
         ParticleApproach = "particle-particle approach",
         /// A particle overlaps an edge's line.
         EdgeOverlap = "particle-edge overlap",
-        /// The closest point lies behind the edge's first end.
+        /// The closest point is behind the edge's first end.
         AlphaLow = "particle-edge alpha > 0",
-        /// The closest point lies before the edge's second end.
+        /// The closest point is before the edge's second end.
         AlphaHigh = "particle-edge alpha < 1",
         /// A particle and an edge approach each other.
         EdgeApproach = "particle-edge approach",
@@ -36,7 +36,7 @@ impl Subject {
         }
     }
 
-    /// Returns the kind of pair that it belongs to.
+    /// Returns the kind of pair to which it belongs.
     #[must_use]
     pub const fn kind(self) -> PairKind {
         match self {

@@ -19,13 +19,13 @@ pub fn template(name: &str) -> Option<String> {
     Some(SETTINGS.replace("TITLE", title).replace("MILESTONE", key) + groups)
 }
 
-/// A version of an assignment's suite. More scenes change the points of all, so they make a new one; what is published
-/// stays.
+/// A version of an assignment's suite. More scenes change the points of all, so they make a new version; published
+/// versions stay.
 #[derive(Debug, Clone, Copy)]
 pub struct Version {
     /// The suite, as a text.
     pub suite: &'static str,
-    /// The names of its scenes, a line each; none for a version that has all that lie in the assignment's folder.
+    /// The names of its scenes, a line each; `None` for a version that has all of the assignment's folder.
     scenes: Option<&'static str>,
 }
 
@@ -69,8 +69,8 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
     }
 }
 
-/// Returns the assignment and the version that a name such as `t2m2@1` means, in letters of any case; `t2m2` is the
-/// newest one.
+/// Returns the assignment and the version of a name such as `t2m2@1`, in letters of any case; `t2m2` is the newest
+/// version.
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
     if matches!(name, "earlier" | "earlier@1") {
@@ -86,8 +86,8 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
     Some((assignment, all[number]))
 }
 
-/// Returns the names of the built-in suites, each with its version, such as `t2m2@2`: the newest one of the default
-/// assignment first.
+/// Returns the names of the built-in suites, each with its version, such as `t2m2@2`: the newest version for the
+/// default assignment first.
 pub fn names() -> impl Iterator<Item = String> {
     Assignment::default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))

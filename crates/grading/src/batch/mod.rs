@@ -1,4 +1,4 @@
-//! Shares the scenes of submissions out among jobs, and tells how it goes.
+//! Shares the scenes of submissions out among jobs, and reports the progress.
 //!
 //! Events are the interface to reports and progress displays. They arrive on the caller's thread, one after the other,
 //! and a result is kept before its event is sent. What a grading consists of is in [`grader`](super::grader).
@@ -26,7 +26,7 @@ pub enum Event<'a> {
         /// The scene's number in the plan.
         scene: usize,
     },
-    /// Steps of a running scene have been judged up to this one; not every step is told.
+    /// Steps of a running scene have been judged up to this one; not every step is reported.
     Step {
         /// The submission's number.
         submission: usize,
@@ -58,23 +58,23 @@ pub enum Event<'a> {
 pub struct BatchResult {
     /// The grades, in the order of the submissions.
     pub grades: Vec<Grade>,
-    /// A fault beside the grades.
+    /// A fault outside the grades.
     pub fault: Option<GradeFault>,
 }
 
-/// A fault beside the scenes' own results; always ours or the machine's.
+/// A fault outside the scenes' own results; always ours or the machine's.
 #[derive(Debug, thiserror::Error)]
 pub enum GradeFault {
     /// Results could no longer be kept, for example because the disk is full: grading was stopped then.
     #[error(transparent)]
     Keeping(#[from] KeepError),
-    /// An event was not borne; grading went on.
+    /// A report of an event failed; grading continued.
     #[error("reporting the progress of grading failed: {0}; please report this")]
     Telling(Fault),
 }
 
-/// Grades all submissions; the grades come back in the same order. After a cancellation the scenes that were not run
-/// say so. Without `results` nothing is looked up or kept.
+/// Grades all submissions, and returns the grades in the same order. After a cancellation, scenes that were not run are
+/// marked. Without `results` nothing is looked up or kept.
 pub fn run(
     grader: &Grader<'_>,
     submissions: &[Submission],
@@ -101,7 +101,8 @@ pub fn run(
     BatchResult { grades, fault }
 }
 
-/// Jobs take scene after scene, and the one with a submission's last result draws its grade; this thread hears of them.
+/// Lets each job take scene after scene. The job with a submission's last result makes its grade, and this thread
+/// receives all events.
 fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();

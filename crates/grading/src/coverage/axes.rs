@@ -1,6 +1,6 @@
 //! The properties of contacts, zones and steps that scenes have to contain, each with its values.
 
-/// A property: its name, and what it may be.
+/// A property: its name, and its possible values.
 #[derive(Debug, Clone, Copy)]
 pub struct Axis {
     /// The name of the property.

@@ -1,4 +1,4 @@
-//! The properties of what an observer hears: of a detection call, and of a zone that is about to be moved.
+//! The properties of an observer's events: a detection call, and a zone that is about to be moved.
 use super::axes::{
     EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion, Normal,
     Place, Radii, Restitution, Side, SomeFixed, When, Why,
@@ -15,7 +15,7 @@ use fosssim_num::{
 /// Positions closer to an end of an edge than this part of it are near it.
 const NEAR: f64 = 0.05;
 
-/// Returns where a pair is looked at.
+/// Returns the place at which a pair is checked.
 pub(super) const fn found(stage: Stage) -> Found {
     match stage {
         Stage::Simple | Stage::ContinuousTime => Found::Continuous,
@@ -113,7 +113,7 @@ pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> Likeness {
     if bodies.iter().all(|&body| scene.particles[body].mass == first) { Likeness::Equal } else { Likeness::Unequal }
 }
 
-/// Returns whether all radii are the same: those of the particles, of an edge where only it and the particle count.
+/// Returns whether all radii are the same: those of the particles; for an edge only its own and the particle's.
 pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Radii {
     let first = scene.particles[bodies[0]].radius;
     let equal = match edge {
@@ -140,7 +140,7 @@ pub(super) const fn ends(edge: &Edge) -> Ends {
     }
 }
 
-/// Returns where a body is at a time, as a part of the step.
+/// Returns the position of a body at a time, as a part of the step.
 fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
     let start = at(detection.q_start, body);
     start + time * (at(detection.q_end, body) - start)
@@ -178,8 +178,8 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
     if (normal.dot(&normal) - 1.0).abs() < 1e-6 { Normal::Unit } else { Normal::Other }
 }
 
-/// Returns why a pair does not collide, by the signs of its polynomials at a few times of this step and of the next
-/// one.
+/// Returns the reason why a pair does not collide, by the signs of its polynomials at a few times of this step and of
+/// the next one.
 pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     const TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
@@ -199,8 +199,8 @@ pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     }
 }
 
-/// Returns how a zone moves from the start of the step to where the failsafe finds it, in the arithmetic of
-/// collisions.md 5: what does not turn has no angular momentum to the last bit.
+/// Returns the motion of a zone from the start of the step to the place at which the failsafe finds it, in the
+/// arithmetic of collisions.md 5: a zone that does not turn has no angular momentum to the last bit.
 pub(super) fn motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
     let moved = |particle| at(q_end, particle) - at(q_start, particle);

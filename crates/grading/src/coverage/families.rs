@@ -17,7 +17,7 @@ pub struct Family {
     pub(super) never: &'static [(Value, Value)],
 }
 
-/// An event: the number of its kind in [`FAMILIES`], and that of each property's value.
+/// An event: the number of its kind in [`FAMILIES`], and the value of each property, as a number.
 pub(super) type Happening = (usize, Vec<usize>);
 
 /// Declares the events of a kind: its number, their properties, and what excludes each other.
@@ -38,7 +38,7 @@ macro_rules! family {
     };
 }
 
-/// Values that exclude each other: one, and all those of another property that no event has with it.
+/// Values that exclude each other: one, and all values of another property that no event has together with it.
 macro_rules! never {
     ($($one:ident::$value:ident with $other:ident::{$($excluded:ident),+}),* $(,)?) => {
         &[$($((($one::AXIS.name, $one::$value as usize), ($other::AXIS.name, $other::$excluded as usize))),+),*]
@@ -87,7 +87,7 @@ family!(NoContact, 3, "a pair does not collide" {
     found: Found,
     fixed: SomeFixed,
 } never never![
-    // Only edges have ends to pass beside, and a half-plane has one particle, which is fixed or not.
+    // Only edges have ends that a particle can miss, and a half-plane has one particle, which is fixed or not.
     Kind::Particles with Why::{BesideFirst, BesideSecond},
     Kind::HalfPlane with Why::{BesideFirst, BesideSecond},
     Kind::HalfPlane with SomeFixed::{Some},
@@ -106,7 +106,7 @@ family!(MovedZone, 4, "the failsafe moves a zone" {
     limit: Limit,
     integrator: Integrator,
 } never never![
-    // A single body hits a half-plane, cannot turn, has not grown, has no edge and nobody to be unlike.
+    // A single body hits a half-plane, cannot turn, has not grown, has no edge and no other body to differ from.
     Size::One with Held::{Nothing, Fixed},
     Size::One with Motion::{Turns},
     Size::One with Age::{Grown},
@@ -135,7 +135,7 @@ family!(HybridStep, 6, "a step of hybrid" {
     penalty: Penalty,
     integrator: Integrator,
 } never never![
-    // Zones are looked for where impulses do not suffice, and then there is a round.
+    // Zones are searched if impulses do not suffice, and then there is a round.
     LoopEnd::Nothing with ZoneCount::{One, Several},
     LoopEnd::Within with ZoneCount::{One, Several},
     LoopEnd::JustEnough with ZoneCount::{One, Several},

@@ -73,7 +73,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Returns the events of one scene; none where its collisions are not those of the assignment.
+    /// Returns the events of one scene; `None` if its collisions are not those of the assignment.
     ///
     /// # Errors
     /// When it can't be simulated to its end.
@@ -115,7 +115,7 @@ impl Coverage {
         values.collect::<BTreeSet<_>>().into_iter()
     }
 
-    /// Returns how many of the pairs of values of a kind of event there are, and of how many that can be.
+    /// Returns the number of pairs of values that a kind of event has, and the number of possible pairs.
     #[must_use]
     pub fn counts(&self, family: usize) -> (usize, usize) {
         let all = || Pairing::all().filter(|pairing| pairing.family == family);

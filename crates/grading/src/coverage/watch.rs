@@ -1,4 +1,4 @@
-//! Hears the reference's run and notes every event.
+//! Observes the reference's run and notes every event.
 use super::{
     Coverage,
     axes::{
@@ -15,8 +15,8 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// The bodies of a contact of the pass that runs, and its event: if it is their only one, and if they have several. The
-/// end of the pass tells which it is.
+/// The bodies of a contact of the current pass, and its event: once if it is their only contact, and once if they have
+/// several. The end of the pass decides which.
 type WatchedContact = (Vec<usize>, [Happening; 2]);
 
 /// A zone as the last round had it.
@@ -32,7 +32,7 @@ pub(super) struct Watch<'a> {
 /// The events of the step that runs.
 #[derive(Default)]
 struct StepHeard {
-    /// Where bodies are at the start and at the end of the step, as the pass that runs sees them.
+    /// The positions of bodies at the start and at the end of the step, as the current pass sees them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
     contacts: Vec<WatchedContact>,
@@ -40,7 +40,7 @@ struct StepHeard {
     hits: Vec<usize>,
     /// All contacts of the step's passes for zones.
     zone_contacts: BTreeSet<Pair>,
-    /// The zones that are moved in this round, and those of the round before.
+    /// The zones that are moved in this round, and in the round before.
     zones: Vec<EarlierZone>,
     before: Vec<EarlierZone>,
     rounds: u32,

@@ -54,7 +54,7 @@ fn grade(
     (grades.into_iter().next().expect("a grade"), fault, told)
 }
 
-/// The content of a grade, but for whether its results were found and how long judging took.
+/// The content of a grade, except for whether its results were found and how long judging took.
 fn says(grade: &Grade) -> (Verdict, Option<f64>, Vec<SceneResult>) {
     let timeless = |result: &SceneResult| SceneResult {
         measured: Measurements { judging: Duration::ZERO, ..result.measured },

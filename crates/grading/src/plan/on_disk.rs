@@ -36,7 +36,7 @@ fn unsound(name: &str, SuiteError { problems }: &SuiteError) -> String {
     format!("the suite has {} problem{plural}:{lines}", problems.len())
 }
 
-/// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up beside it.
+/// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up next to it.
 ///
 /// # Errors
 /// When there is no such suite; otherwise everything that is wrong with it.
@@ -65,7 +65,7 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     loaded.map_err(|error| unsound(name, &error).into())
 }
 
-/// Reads, validates and looks up a suite in one go; files are relative to `folder`.
+/// Reads, validates and looks up a suite; files are relative to `folder`.
 ///
 /// # Errors
 /// As for [`load_by`].
@@ -107,7 +107,7 @@ fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Matching
     Ok(found)
 }
 
-/// Returns the bytes of a scene: of a regular file, which nobody has to wait for.
+/// Returns the bytes of a scene: of a regular file, which can be read without waiting.
 fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
     const LARGEST: u64 = scene::LARGEST_SCENE as u64;
     let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;

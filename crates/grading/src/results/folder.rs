@@ -1,7 +1,7 @@
 //! Results in a folder: a journal with one JSON line per judged scene.
 //!
-//! A line is written and flushed before its result is told. A line cut short by a crash is dropped on the next opening.
-//! Lines are what [`line`] writes; those of other versions are passed over. A lock keeps two graders out of one folder.
+//! A line is written and flushed before its result is reported. A line cut short by a crash is dropped on the next
+//! opening. [`line`] writes the lines; those of other versions are ignored. A lock keeps two graders out of one folder.
 use super::{KeepError, Results, line, read_line};
 use crate::{key::Key, result::SceneResult};
 use fosssim_files::{FileError, Folder};
@@ -101,7 +101,7 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
     let mut sound = 0;
     for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
-        // A line that somebody damaged costs its own result only.
+        // A damaged line costs its own result only.
         if let Some(entry) = read_line(line) {
             found.insert(entry.key, entry.result);
         }
@@ -110,10 +110,10 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
     Ok(sound)
 }
 
-/// Hands over the whole lines of a journal.
+/// Passes the whole lines of a journal to `take`.
 ///
 /// # Errors
-/// When it can't be read, or has a line that is longer than any result; what `take` returns.
+/// When it can't be read, or has a line that is longer than any result; the errors of `take`.
 pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
@@ -162,7 +162,7 @@ impl Results for FolderResults {
 fn append(file: &mut File, line: &[u8]) -> io::Result<()> {
     let before = file.stream_position().unwrap_or(0);
     file.write_all(line).and_then(|()| file.flush()).inspect_err(|_| {
-        // Half a line must not stand before the next one; opening would drop it anyway.
+        // The next line must not follow half a line; opening would drop the half anyway.
         let _ = file.set_len(before);
         let _ = file.seek(io::SeekFrom::Start(before));
     })
@@ -271,7 +271,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
-        // Nothing that is written here finds room.
+        // There is no room for what is written here.
         journal.journal().file = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
         let error = journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect_err("full").to_string();
         assert!(error.contains("journal.jsonl") && error.contains("No space left"), "{error}");

@@ -1,7 +1,7 @@
-//! Where results are kept, so that nothing is lost and nothing is done twice.
+//! Places for results, so that nothing is lost and nothing is done twice.
 //!
 //! Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene, rule or
-//! grader is simply not found. What becomes of a grading does not depend on where its results are kept.
+//! grader is simply not found. The outcome of a grading does not depend on the place of its results.
 mod folder;
 
 pub use super::form::{Entry, line, read_line};
@@ -11,7 +11,7 @@ use super::{key::Key, result::SceneResult};
 
 /// A place for results, which several jobs use at one time.
 pub trait Results: Sync {
-    /// Finds the result that was kept under this key; of several the last one.
+    /// Finds the result that was kept under this key; the last of several.
     fn find(&self, key: &Key) -> Option<SceneResult>;
 
     /// Keeps a result. A place that outlives the grader has it written when this returns. The submission's name is for

@@ -28,7 +28,8 @@ impl SubmissionGrading<'_> {
     /// Where the suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
-        // A run beside the scene that was the end does not count, or the number of jobs would.
+        // A run parallel to the scene that was the end does not count, or the result would depend on the number of
+        // jobs.
         let known: Vec<_> = results
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
@@ -44,7 +45,7 @@ impl SubmissionGrading<'_> {
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
             drop(self.staged());
         }
-        // The submission's copy goes away.
+        // The submission's copy is removed.
         let staged = lock(&self.staged).take();
         let (program, build) = match staged.as_deref() {
             Some(Ok(staged)) => (staged.program_digest(), staged.build.clone()),
@@ -79,8 +80,8 @@ impl SubmissionGrading<'_> {
         grade
     }
 
-    /// Returns the smallest scene for each cause. It is made from scenes that students see, where these show it: it
-    /// must tell nothing of others.
+    /// Returns the smallest scene for each cause. It is made from scenes that students see, if these show the cause: it
+    /// must reveal nothing of others.
     fn smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
         let plan = self.grader.plan;
         let is_visible = |name: &str| {
@@ -114,8 +115,8 @@ impl SubmissionGrading<'_> {
         found
     }
 
-    /// Returns the milestone of which the program seems to be, if its library lacks what the suite's has. It is looked
-    /// for where no scene is accepted, and in half of them there is no trace that can be read.
+    /// Returns the milestone to which the program seems to belong, if its library lacks what the suite's has. It is
+    /// searched if no scene is accepted, and half of them leave no readable trace.
     fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
         let expected = self.grader.assignment?;
         let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
@@ -138,7 +139,7 @@ fn is_wrong(result: &SceneResult) -> bool {
 }
 
 /// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,
-/// computed only where some fail and some do not.
+/// computed only if some fail and some do not.
 fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

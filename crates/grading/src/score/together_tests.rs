@@ -66,8 +66,8 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
     grade
 }
 
-/// An explanation that all scenes together make stands with each that it explains; where numbers end is told of each by
-/// itself.
+/// An explanation that all scenes together give is reported for each that it explains; each reports for itself where
+/// values stop being numbers.
 #[test]
 fn each_scene_says_what_all_together_say() {
     let end = |step, stage| {
@@ -103,7 +103,7 @@ fn each_scene_says_what_all_together_say() {
     assert_eq!(steps, [Some(7), Some(3), Some(5)]);
 }
 
-/// A mistake is mended first, before anybody looks for where numbers end.
+/// A mistake is mended first, before the place where values stop being numbers matters.
 #[test]
 fn where_numbers_end_comes_last() {
     let end = || {
@@ -121,7 +121,8 @@ fn where_numbers_end_comes_last() {
     assert_eq!(first(vec![vec![end(), short(3)], vec![end(), short(3)]]), "loop-one-fewer", "though it is not proven");
 }
 
-/// Mending a mistake is worth the scenes in which it is the only one, and a group of all or nothing only as a whole.
+/// Mending a mistake is worth the points of the scenes in which it is the only mistake, and of a group of all or
+/// nothing only as a whole.
 #[test]
 fn a_mistake_is_worth_the_points_that_it_alone_costs() {
     let one = |key: &str| explanation(key, About::Mistake, 4);

@@ -1,7 +1,8 @@
-//! Which decisions of the reference's own run hang on round-off: what a scene asks of programs that nobody can promise.
+//! Finds the decisions of the reference's own run that depend on round-off: a scene with such a decision asks too much
+//! of programs.
 //!
-//! It simulates and certifies, no more; a trace is not needed. Collision handling `simple` decides without polynomials
-//! and is not looked at.
+//! It simulates and certifies only; a trace is not needed. Collision handling `simple` decides without polynomials and
+//! is not checked.
 use super::{contact, formulas::BoundedPairMotion};
 use fosssim_findings::fair::Borderline;
 use fosssim_model::{
@@ -10,7 +11,7 @@ use fosssim_model::{
 };
 
 /// Returns all decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units
-/// can flip, in their order; `collides` is what the reference decides. Decisions whose arithmetic is exact are never
+/// can flip, in their order; `collides` is the reference's decision. Decisions whose arithmetic is exact are never
 /// among them.
 ///
 /// # Errors
@@ -63,7 +64,7 @@ mod tests {
 
     #[test]
     fn a_ball_that_ends_its_step_in_touch_is_borderline() {
-        // After the first step the ball's distance is 0.1, its radius, but for a rounding: half a step's way is 0.9.
+        // After the first step the ball's distance is 0.1, its radius, except for a rounding: half a step's way is 0.9.
         let ball = r#"<particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>"#;
         let found = found(ball);
         assert!(found.iter().any(|decision| decision.step == 1), "{found:?}");

@@ -1,14 +1,14 @@
-//! Where the two rule books differ about a trace: which rule of the original is the cause.
+//! Finds the rule of the original that makes the two rule books differ about a trace.
 //!
-//! It looks at what both have found, no closer: the first difference of the book that rejects names the rule. What the
-//! original's rules are is written in oracle-behavior.md 4 to 6, why they can't be trusted in numerics.md 1.
+//! It uses the findings of both: the first difference of the book that rejects names the rule. The original's rules are
+//! written in oracle-behavior.md 4 to 6, and why they can't be trusted in numerics.md 1.
 use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
     fair::{FairRefusal, FairVerdict, Form, Judgement},
 };
 use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
-/// Returns why the two rule books differ about a trace; `None` where they agree, or one of them has no verdict.
+/// Returns the reason why the two rule books differ about a trace; `None` if they agree, or one of them has no verdict.
 #[must_use]
 pub fn cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
@@ -22,7 +22,7 @@ pub fn cause(outcome: &Outcome) -> Option<Cause> {
 /// Returns why parity rejects what fair accepts.
 fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
-    // Not all borderline decisions are kept as examples; one that is not may be the one.
+    // Not all borderline decisions are kept as examples; this one may be missing.
     let is_borderline = fair.borderline > fair.borderline_examples.len() as u64
         || fair.borderline_examples.iter().any(|decision| decision.step == first.step);
     match &first.detail {
@@ -66,7 +66,7 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } if is_mid_record(first, outcome) => {
             Cause::MidRecord
         }
-        // The original came to its end: it is the trace's own polynomials that lead nowhere.
+        // The original came to its end, so it is the trace's own polynomials that have no result.
         FindingDetail::NoResult { .. } => Cause::OwnPolynomials,
         FindingDetail::ContactTime { .. } => Cause::ContactTime,
         FindingDetail::RepeatedCollision { .. } => Cause::RepeatedCollision,
@@ -87,7 +87,7 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     }
 }
 
-/// Returns whether what was compared is in a step's mid record, of the two that it has.
+/// Returns whether the compared value is in a step's mid record, if it has one.
 fn is_mid_record(finding: &Finding, outcome: &Outcome) -> bool {
     let has_mid_records = matches!(outcome.collisions, CollisionType::ContinuousTime | CollisionType::Hybrid);
     has_mid_records && finding.frame + 1 == 2 * u64::from(finding.step)

@@ -11,7 +11,7 @@ fosssim_model::drops_leading!();
 /// A polynomial that is right.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
-    /// The positive factor by which the logged one is larger; `None` where round-off is all there is.
+    /// The positive factor of the logged polynomial; `None` if there is only round-off.
     pub scale: Option<f64>,
     /// The largest share of its tolerance that a coefficient uses, 0 to 1. For a polynomial that is accepted early this
     /// is an upper bound (a quarter or less).
@@ -31,17 +31,18 @@ pub enum Mismatch {
         expected: f64,
         /// The logged coefficient; 0 where it is missing.
         actual: f64,
-        /// How far it may be off.
+        /// How far it may be off, as a number.
         tolerance: f64,
     },
 }
 
-/// Compares. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by the course's
-/// library. `hints` are factors of polynomials of the same kind, for those that hold too little to tell their own.
+/// Compares two polynomials. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by
+/// the course's library. `hints` are factors of polynomials of the same kind, for those that hold too little to show
+/// their own.
 ///
-/// Where the expected polynomial is zero but for round-off, every other one that has numbers is right, too: some
-/// programs divide polynomials by their size. Where the expected one has no number, because the trace's own state has
-/// lost them, the logged one has none either.
+/// If the expected polynomial is zero except for round-off, every other one that has numbers is right, too: some
+/// programs divide polynomials by their size. If the expected one has no number, because the trace's own state has lost
+/// them, the logged one must have none either.
 #[inline]
 pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match is_clear(expected, actual).or_else(|| fits(expected, actual)) {
@@ -50,32 +51,32 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
     }
 }
 
-/// How two lists of coefficients compare that have lost the same ones, without a look at bounds.
+/// The comparison of two lists of coefficients that have lost the same ones, without bounds.
 ///
 /// The factor is that of the sums of moduli. Bounds are at least as large as the values, so whatever is off by less
 /// than [`FAIR_NORM_UNITS`] of the sum of moduli is right; what is off by a small part of that, as nearly all right
-/// coefficients are, is right at once.
+/// coefficients are, is clearly right.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
     /// The sum of the expected coefficients' moduli.
     pub sum: f64,
-    /// That of the logged ones.
+    /// The sum of the logged coefficients' moduli.
     pub logged: f64,
     /// The factor.
     pub scale: f64,
-    /// How far a coefficient is off at most.
+    /// The greatest deviation of a coefficient.
     pub worst: f64,
 }
 
-/// Sums of coefficients between these neither overflow nor underflow on the way; beyond, a close look is taken.
+/// Sums of coefficients between these neither overflow nor underflow on the way; beyond, bounds are computed.
 const LEAST: f64 = 1e-100;
 pub(super) const MOST: f64 = 1e100;
 
 impl Similarity {
-    /// The similarity of what is not compared.
+    /// The similarity of polynomials that are not compared.
     pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
 
-    /// Returns the comparison of these expected and logged coefficients, of which there are as many.
+    /// Returns the comparison of these expected and logged coefficients, which are equal in number.
     #[inline(always)]
     pub fn measure(own: &[f64], logged: &[f64]) -> Self {
         // Loops of a known length are unrolled.
@@ -115,13 +116,14 @@ impl Similarity {
         Match { scale: Some(self.scale), share: self.worst / self.tolerance() }
     }
 
-    /// Returns how far coefficients may be off at least.
+    /// Returns the least tolerance of coefficients.
     #[inline(always)]
     fn tolerance(&self) -> f64 {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
     }
 
-    /// Returns whether they are right at once. Coefficients that both have lost are small with factors near 1 only.
+    /// Returns whether the coefficients are clearly right. Coefficients that both have lost are small only with factors
+    /// near 1.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
         let is_moderate = |sum: f64| (LEAST..MOST).contains(&sum);
@@ -132,8 +134,7 @@ impl Similarity {
     }
 }
 
-/// Compares as [`compare`] does, where bounds need not be asked how far the coefficients may be off; `None` leaves it
-/// open.
+/// Compares as [`compare`] does, if the comparison needs no bounds of the coefficients; `None` leaves it open.
 fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
@@ -150,13 +151,13 @@ fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     is_right.then(|| similarity.matched())
 }
 
-/// Returns whether a logged polynomial is certainly wrong with every factor, found without looking for the best one.
+/// Returns whether a logged polynomial is certainly wrong with every factor, found without searching for the best one.
 /// `false` leaves it open.
 ///
-/// A polynomial that [`compare`] takes for right stays near the expected one times its factor, at any time within the
-/// step: it is off by less than `WIDEST` units of all bounds together. For the tolerances of six coefficients are at
-/// most 2 `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead
-/// have less. So each time allows an interval of factors, and where two of these have nothing in common there is none.
+/// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
+/// is off by less than `WIDEST` units of all bounds together. The tolerances of six coefficients are at most 2
+/// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead have less.
+/// Each time therefore allows an interval of factors, and if two of these are disjoint there is no factor.
 pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// Tolerances, and the rounding of values here.
     const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
@@ -186,9 +187,9 @@ pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     least > most + 1e-9 * most.abs()
 }
 
-/// Compares as [`compare`] does, where the logged polynomial is complete and right with the factor that fits best, as
-/// nearly all are; `None` leaves it open. The factor is found once, and all coefficients are compared with it at once,
-/// by the same operations.
+/// Compares as [`compare`] does, if the logged polynomial is complete and right with the factor that fits best, as
+/// nearly all are; `None` leaves it open. The factor is found once, and all coefficients are compared with it in one
+/// go, by the same operations.
 fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
@@ -231,7 +232,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         return check_numbers_where(|r| r.value.is_finite(), right, logged);
     }
     if norm(right) == 0.0 && logged.iter().any(|s| *s != 0.0) {
-        // Not even round-off: nothing moves, and every formula says so.
+        // There is not even round-off: nothing moves, and every formula gives zero.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     }
     if says_nothing(right) {
@@ -243,18 +244,18 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         matches.find_map(Result::ok).map(|share| Match { scale: None, share })
     };
     let Some(fitted) = fit(right, logged, missing) else {
-        // Nothing that is left tells a factor, so it is 1 as far as this polynomial goes.
+        // The coefficients that are left show no factor, so it is 1 for this polynomial.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     };
     let first = matched(fitted);
     if first.is_ok() {
         return first;
     }
-    // The coefficients that are left of a polynomial may tell the factor only roughly.
+    // The coefficients that are left of a polynomial may show the factor only roughly.
     if let Some(found) = hinted() {
         return Ok(found);
     }
-    // One wrong coefficient spoils the fit; the factor on which most coefficients agree says which one it is.
+    // One wrong coefficient spoils the fit; the factor on which most coefficients agree shows which one it is.
     let mut best = (wrong(right, logged, missing, fitted), first);
     for (r, s) in right.iter().zip(logged).skip(missing) {
         let scale = s / r.value;
@@ -265,7 +266,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
             }
         }
     }
-    // When at most one agrees, the factor says nothing.
+    // If at most one agrees, the factor proves nothing.
     if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
 }
 
@@ -289,7 +290,7 @@ fn check_numbers_where(
     Err(Mismatch::Coefficient { power: right.len() - 1 - k, expected, actual, tolerance: f64::NAN })
 }
 
-/// Returns whether a polynomial is zero on the whole step but for round-off.
+/// Returns whether a polynomial is zero on the whole step except for round-off.
 pub fn says_nothing(expected: &[BoundedValue]) -> bool {
     sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * norm(expected) || !expected.iter().any(is_significant)
 }
@@ -304,7 +305,7 @@ fn is_significant(r: &BoundedValue) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
 
-/// Returns the factor that fits best, each coefficient weighted by its precision; `None` where all are round-off. Not
+/// Returns the factor that fits best, each coefficient weighted by its precision; `None` if all are round-off. Not
 /// positive, not finite: the polynomial is wrong.
 fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = norm(right);
@@ -320,8 +321,8 @@ fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
 }
 
 /// Returns how far a coefficient may be off, in units of the roundoff. Both sides round. A coefficient that is small
-/// beside the others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no decision
-/// can tell.
+/// compared with the others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no
+/// decision shows a difference.
 fn units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
@@ -349,9 +350,9 @@ fn norm(right: &[BoundedValue]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
-/// Returns the factors with which a logged polynomial would be right although it does not tell its own: at least so
-/// large that what it holds is round-off, at most so small that the course's library drops what it lacks. `None` if it
-/// tells, or if there is no such factor.
+/// Returns the factors with which a logged polynomial would be right although it does not show its own. They are so
+/// large that all it holds is round-off at least, and so small that the course's library drops what it lacks at most.
+/// `None` if it shows its factor, or if there is no such factor.
 pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -364,10 +365,10 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
     (least.is_finite() && least <= most).then_some([least, most])
 }
 
-/// Twice the tolerance of a coefficient beside which all others are small, in its bound.
+/// Twice the tolerance of a coefficient compared with which all others are small, in units of its bound.
 const UNIT: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// Returns the greatest factor with which the course's library drops all of these.
+/// Returns the greatest factor with which the course's library drops all of these coefficients.
 fn most_factor(dropped: &[BoundedValue]) -> f64 {
     LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
 }
@@ -393,7 +394,7 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
     Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 
-/// Returns how many coefficients are wrong with this factor.
+/// Returns the number of coefficients that are wrong with this factor.
 fn wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
     let norm = norm(right);
     let all = right.iter().zip(logged).enumerate();

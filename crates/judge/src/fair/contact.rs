@@ -1,4 +1,4 @@
-//! Contacts and states: how far they may be off, and which decisions hang on round-off.
+//! The tolerances of contacts and states, and the decisions that depend on round-off.
 use super::{
     context::{Context, Records},
     formulas::{BoundedPairMotion, ExpectedPolynomials},
@@ -62,7 +62,7 @@ fn is_possible(expected: &ExpectedPolynomials, t: f64, value: Value) -> bool {
 /// Returns whether a pair may be in contact at time `t` first: it may be so at all, and the polynomials were not all
 /// positive between `t` and the reference's time.
 fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> bool {
-    // Between the two times nothing may be decided: else one of them is not the first.
+    // Between the two times no collision may be certain: else neither is the first.
     let undecided = || {
         [0.25, 0.5, 0.75].into_iter().all(|part| {
             let between = own + part * (t - own);
@@ -104,7 +104,7 @@ pub(super) fn hit(
     compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, judged)
 }
 
-/// Compares a logged contact of a pair that may collide or not with what it would have to be.
+/// Compares a logged contact of a pair, whose collision is open, with the expected contact.
 pub(super) fn possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
@@ -131,9 +131,9 @@ pub(super) fn possible_hit(
     compare_normal(Impulse { pair, normal, time: actual.time }, tolerance, actual, judged)
 }
 
-/// Returns the contact normal at a time, and the tolerance of that vector. Of the whole vector: in axes of another
-/// direction the round-off of one component is that of both. The assignment asks for the shortest vector: where the
-/// round-off of the time leads beyond an edge's end, that to the end is as right as that to the line.
+/// Returns the contact normal at a time, and the tolerance of that vector. The tolerance is of the whole vector: in
+/// axes of another direction the round-off of one component is that of both. The assignment requires the shortest
+/// vector: if the round-off of the time leads beyond an edge's end, that to the end is as right as that to the line.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));
@@ -141,8 +141,8 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.to_nearest(t) - value))
 }
 
-/// Returns the tolerance of contact normals that come from positions at once, whose roundings are of the largest one's
-/// size.
+/// Returns the tolerance of contact normals that are computed from positions directly, whose roundings are of the
+/// largest position's size.
 fn simple_tolerance(before: &State) -> f64 {
     FAIR_UNITS * UNIT_ROUNDOFF * largest(&before.positions)
 }
@@ -169,7 +169,7 @@ fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 
     BoundedPairMotion::for_pair(context.scene, pair, positions, positions).to_nearest(1.0)
 }
 
-/// How far the state at the end of a step may be off.
+/// The tolerances of the state at the end of a step.
 pub(super) struct Tolerances<'a> {
     position: f64,
     velocity: f64,
@@ -182,7 +182,7 @@ impl<'a> Tolerances<'a> {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
         let size = largest(&own.positions);
         let speed = largest(&own.velocities);
-        // Where contacts are answered, velocities come from displacements over the time step.
+        // If contacts are answered, velocities are computed from displacements over the time step.
         let from_positions = match context.scene.collision {
             Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
             Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
@@ -206,8 +206,8 @@ impl<'a> Tolerances<'a> {
     }
 }
 
-/// Compares a logged state with the reference's. A velocity is not charged where the position is wrong: they have the
-/// same cause.
+/// Compares a logged state with the reference's. A wrong velocity is not counted if the position is wrong: they have
+/// the same cause.
 pub(super) fn compare_states(
     judged: &mut StepJudgement,
     frame: u64,
@@ -243,9 +243,8 @@ pub(super) fn compare_states(
     }
 }
 
-/// Returns how far two vectors are apart. Where the reference itself has no number, or an infinite one, from the
-/// trace's own state, a trace that has the same is not to blame: such components are no distance. NaN against a number
-/// is NaN.
+/// Returns the distance of two vectors. If the reference itself has NaN or infinity from the trace's own state, a trace
+/// with the same value is right: such components count as equal. NaN against a number is NaN.
 fn distance(expected: Vec2, actual: Vec2) -> f64 {
     let apart = |expected: f64, actual: f64| {
         let same = expected == actual || expected.is_nan() && actual.is_nan();
@@ -272,8 +271,8 @@ fn is_ordinary(c: f64) -> bool {
     (c == 0.0) | (c.abs() >= SEARCH_SMALLEST_COEFFICIENT) & (c.abs() <= SEARCH_LARGEST_COEFFICIENT)
 }
 
-/// Returns the time of impact of these polynomials as they are, infinite where there is certainly none; `None` where
-/// the root finder does not end.
+/// Returns the time of impact of these polynomials as they are, infinite if there is certainly none; `None` if the root
+/// finder does not end.
 pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
     if excludes_unit_interval(polynomials) {
         return Some(f64::INFINITY);
@@ -288,7 +287,7 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
 pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Option<bool> {
     let polynomials = expected.polynomials();
     if !polynomials.iter().copied().flatten().all(|c| is_ordinary(c.value)) {
-        // Among numbers of such sizes nobody promises anything, and certainty would take long.
+        // Among numbers of such sizes no program can promise anything, and certainty would take long.
         return None;
     }
     let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
@@ -317,7 +316,8 @@ pub(super) fn possible_time(expected: &ExpectedPolynomials) -> f64 {
 mod tests {
     use super::*;
 
-    /// Bits aside, a program that ends with no number where the reference has none has done what the scene asks.
+    /// If neither has a number, the distance is none: a program that ends without numbers where the reference has none
+    /// has done what the scene requires.
     #[test]
     fn what_is_no_number_for_the_reference_either_is_no_distance() {
         let (nan, infinite) = (f64::NAN, f64::INFINITY);

@@ -15,13 +15,13 @@ pub(crate) struct Context<'a> {
     pub per_pass: usize,
     /// Pairs of one detection pass.
     pub pairs: usize,
-    /// Those of each kind.
+    /// The calls of each kind.
     pub of_kinds: ByKind<u64>,
     /// Records of one step.
     pub records_per_step: u32,
-    /// States that need no look at the reference's own run.
+    /// States that need no comparison with the reference's own run.
     pub ordinary: OrdinaryRange,
-    /// Whether bounds are asked about every polynomial, also about those that are right at once.
+    /// Whether bounds are computed for every polynomial, also for those that are clearly right.
     pub looks_closely: bool,
 }
 
@@ -82,7 +82,7 @@ pub(crate) struct Records<'a> {
     pub frame: u64,
     /// The state that it starts from, the trace's own.
     pub before: &'a State,
-    /// The mid record, where the layout has one.
+    /// The mid record, if the layout has one.
     pub mid: Option<&'a LenientFrame>,
     /// The end record.
     pub end: &'a LenientFrame,

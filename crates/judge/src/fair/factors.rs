@@ -1,14 +1,14 @@
-//! The factors that a trace's polynomials tell.
+//! The factors that a trace's polynomials show.
 use fosssim_model::sim::{ByKind, PairKind};
 use fosssim_num::tolerances::FAIR_OUTLIER;
 
-/// The factors that polynomials of one kind of pair and number tell: the least and the greatest, and how they are
-/// spread.
+/// The factors that polynomials of one kind of pair and number show: the least and the greatest, and their
+/// distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
     least: f64,
     greatest: f64,
-    /// The last one.
+    /// The last factor.
     last: f64,
     count: u64,
     /// The sum of their binary exponents, and of the squares of these.
@@ -45,7 +45,7 @@ impl Factors {
         }
     }
 
-    /// Adds those of a later step.
+    /// Adds the factors of a later step.
     pub(super) fn add(&mut self, other: &Self) {
         if other.count > 0 {
             (self.least, self.greatest) = (self.least.min(other.least), self.greatest.max(other.greatest));
@@ -67,8 +67,8 @@ impl Factors {
         (self.count > 0).then_some([self.least, self.greatest])
     }
 
-    /// Returns the factors that are usual: the whole range but for outliers, which say nothing of polynomials that are
-    /// gone; none of no factor.
+    /// Returns the usual factors: the whole range except outliers, which prove nothing about missing polynomials.
+    /// `None` without factors.
     pub(super) fn usual(&self) -> Option<[f64; 2]> {
         let [least, greatest] = self.range()?;
         let of_all = |sum: i64| sum as f64 / self.count as f64;

@@ -1,7 +1,7 @@
 //! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
 //!
-//! Each coefficient has its right value, and a bound of how far a correct program may be off: every operation, and
-//! every input, adds its modulus to the bound of the result. The formulas are those of the passes
+//! Each coefficient has its right value, and a bound for the deviation of a correct program: every operation, and every
+//! input, adds its modulus to the bound of the result. The formulas are those of the passes
 //! ([`fosssim_model::sim::formulas`]), so values are the reference's own bits.
 use fosssim_model::{
     scene::Scene,
@@ -203,8 +203,8 @@ impl BoundedPairMotion {
         expected
     }
 
-    /// Returns whether two times within the step are one moment: the points are where they are, but for some roundings
-    /// of the size of their positions.
+    /// Returns whether two times within the step are one moment: the points are at the same places, except for some
+    /// roundings of the size of their positions.
     pub fn is_moment(&self, one: f64, other: f64) -> bool {
         let ways = match self {
             Self::Particles(ways, _) => &ways[..],
@@ -220,7 +220,7 @@ impl BoundedPairMotion {
     }
 
     /// Returns the vector to the nearest point of the second object at time `t`. It differs from [`Self::normal`]
-    /// beyond the ends of an edge, and a time of impact at which the particle comes in over an end may be there by its
+    /// beyond the ends of an edge, and a time of impact at which the particle arrives over an end may be there by its
     /// round-off.
     pub fn to_nearest(&self, t: f64) -> Vec2 {
         let place = |way: &BoundedPointMotion| {

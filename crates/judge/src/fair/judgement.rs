@@ -16,7 +16,7 @@ const EXAMPLES: usize = 8;
 /// The number of decisions that a small scene may have in all.
 const FEW: u64 = 64;
 
-/// The fair rules' judgement of a trace, as far as it goes, and the polynomials that hang on the rest of the trace.
+/// The fair rules' judgement of a trace so far, and the polynomials that depend on the rest of the trace.
 #[derive(Debug, Default)]
 pub(crate) struct Judging {
     said: Judgement,
@@ -24,14 +24,14 @@ pub(crate) struct Judging {
     scales: Scales,
     /// The factors that single coefficients claim.
     claimed: Scales,
-    /// The number of polynomials that are the reference's bit for bit; approaches, which say nothing of objects at
+    /// The number of polynomials that are the reference's bit for bit; approaches, which show nothing for objects at
     /// rest, count once a step.
     same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
-    /// Polynomials that hang on the program's factors, step by step.
+    /// Polynomials that depend on the program's factors, step by step.
     pending: Vec<PendingOfStep>,
 }
 
-/// Polynomials of one step and kind that hang on the program's factors.
+/// Polynomials of one step and kind that depend on the program's factors.
 #[derive(Debug, Clone, Copy)]
 struct PendingOfStep {
     polynomials: Pending,
@@ -40,7 +40,7 @@ struct PendingOfStep {
 }
 
 impl Judging {
-    /// Adds what the initial record says.
+    /// Adds the findings of the initial record.
     pub(crate) fn add_initial(&mut self, initial: &StepJudgement) {
         self.add(initial);
         self.said.findings.wrong_steps = 0;
@@ -86,7 +86,7 @@ impl Judging {
             let (kind, number) = claim.place;
             self.claimed[kind][number].take(claim.least.0.midpoint(claim.most.0));
         }
-        // Polynomials that fit already are settled, and so are those that count in the other form only.
+        // Polynomials that fit already are settled, and so are polynomials that count only in the other form.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
             let is_of_other_form = self.said.form != Form::Either && !pending.is_of(self.said.form);
@@ -99,9 +99,9 @@ impl Judging {
         self.pending.extend(hanging);
     }
 
-    /// Returns the finding about polynomials that hang on factors, with the factors that are usual in the trace so far.
-    /// Others show these, beside the reference's own polynomials; where there are none of either, it takes those that
-    /// all claim, or else 1.
+    /// Returns the finding about polynomials that depend on factors, with the usual factors of the trace so far. Others
+    /// show these, next to the reference's own polynomials; if there are none of either, it takes the factors that all
+    /// claim, or else 1.
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
         let mut told = self.scales[kind][number];
@@ -116,23 +116,24 @@ impl Judging {
         self.said.findings.keep_first(&finding);
     }
 
-    /// Charges what is no round-off with the factors that are usual for polynomials of the same kind, in the form that
+    /// Counts what is no round-off with the factors that are usual for polynomials of the same kind, in the form that
     /// the trace uses.
     fn settle_pending(&mut self) {
         let all = std::mem::take(&mut self.pending);
         let fails =
             |form| all.iter().any(|step| step.polynomials.is_of(form) && self.finding(&step.polynomials).is_some());
         if self.said.form == Form::Either && fails(Form::Course) {
-            // Missing coefficients may tell the form all the same: it is the one in which none that counts is missing.
+            // Missing coefficients may show the form all the same: it is the form in which no coefficient that counts
+            // is missing.
             self.said.form = if fails(Form::Right) { Form::Course } else { Form::Right };
         }
         let (form, mut last_wrong) = (self.said.form, 0);
         for PendingOfStep { polynomials, is_wrong } in all.iter().filter(|step| step.polynomials.is_of(form)) {
             let Some(finding) = self.finding(polynomials) else { continue };
-            // Steps come in their order, so the polynomials of one stand together.
+            // Steps are in order, so the polynomials of one step are together.
             self.said.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
-            // In a step polynomials come before what they decide.
+            // In a step polynomials come before their decisions.
             if self.said.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
                 self.said.findings.first_divergence = None;
             }
@@ -189,7 +190,7 @@ impl Judging {
     }
 }
 
-/// Returns whether a finding comes after that about a polynomial.
+/// Returns whether a finding follows from the one about a polynomial.
 fn follows(finding: &Finding, polynomial: &Finding) -> bool {
     let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
     finding.step > polynomial.step || finding.step == polynomial.step && is_decision

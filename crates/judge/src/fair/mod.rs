@@ -5,24 +5,24 @@
 //!
 //! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
 //!    searches the submission's polynomials, answers its logged contacts, and begins the geometric part at its mid
-//!    record. So a mistake is charged once, at the stage where it is made. Where the time of impact that its
-//!    polynomials give is the reference's but for round-off, it takes the reference's. Where right polynomials lead the
-//!    root finder to another decision than the reference's, either will do.
+//!    record. A mistake is therefore counted once, at the stage where it is made. If the time of impact of its
+//!    polynomials is the reference's except for round-off, it takes the reference's. If right polynomials lead the root
+//!    finder to another decision than the reference's, both are accepted.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
 //!    bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
-//!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace tells. NaN
+//!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace shows. NaN
 //!    fails.
 //! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
 //!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
-//! 4. A decision that such roundings can flip is borderline: it is followed and counted, never charged. Where and when
-//!    the pair collides, if it does, is not free. Coefficients that were lost because of a factor are no round-off:
-//!    decisions and times of impact are compared with those of the whole polynomials. Those that a factor keeps, and
-//!    that the course's library drops from the reference's, are followed.
-//! 5. It looks at everything: the first record, mid records, times of impact, repeated contacts, and what follows the
+//! 4. A decision that such roundings can flip is borderline: it is followed and noted, never counted as wrong. Where
+//!    and when the pair collides, if it does, is not free. Coefficients that were lost because of a factor are no
+//!    round-off: decisions and times of impact are compared with those of the whole polynomials. Those that a factor
+//!    keeps, and that the course's library drops from the reference's, are followed.
+//! 5. It checks everything: the first record, mid records, times of impact, repeated contacts, and what follows the
 //!    last record.
-//! 6. A step from or to a state that leads nowhere is never right.
+//! 6. A step from or to a state without a result is never right.
 //!
-//! A step whose records are the reference's bit for bit needs none of this. Polynomials that are right at once
+//! A step whose records are the reference's bit for bit needs none of this. Polynomials that are clearly right
 //! (`follow::at_once`) need no bounds.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS

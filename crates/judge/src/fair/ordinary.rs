@@ -34,7 +34,7 @@ impl OrdinaryRange {
         self.beyond(state).is_none()
     }
 
-    /// Returns the first particle whose state is beyond what the range allows.
+    /// Returns the first particle whose state is outside of the range.
     pub(super) fn beyond(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);

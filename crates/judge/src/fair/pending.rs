@@ -1,4 +1,4 @@
-//! Polynomials that are right with some factors only, or in one of two forms only.
+//! Polynomials that are right only with some factors, or only in one of two forms.
 use fosssim_findings::{Finding, fair::Form};
 use fosssim_model::sim::PairKind;
 
@@ -11,22 +11,22 @@ pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];
 pub(crate) struct Pending {
     /// Kind of pair and number of the polynomial.
     pub place: (PairKind, usize),
-    /// The form in which they are so; any, where there is but one.
+    /// The form in which they are right; any form, if there is only one.
     pub form: Form,
     /// Whether they claim factors of their own, and show none.
     pub is_claim: bool,
     /// The number of them in the step.
     pub count: u64,
-    /// The greatest of the least factors that they need, and what is wrong otherwise.
+    /// The greatest of the least factors that they need, and the finding otherwise.
     pub least: (f64, Finding),
-    /// The least of the greatest factors that they allow, and what is wrong otherwise.
+    /// The least of the greatest factors that they allow, and the finding otherwise.
     pub most: (f64, Finding),
 }
 
 impl Pending {
-    /// Returns the finding, if there is one, where the program's factors lie between these.
+    /// Returns the finding, if there is one, for program factors between these.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
-        // Factors are known but for rounding.
+        // Factors are known except for rounding.
         let room = 1e-9;
         let (least, most) = (self.least, self.most);
         if !(least.0 <= high * (1.0 + room)) {

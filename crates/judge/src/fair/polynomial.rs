@@ -1,5 +1,5 @@
-//! The evidence of one logged polynomial, as far as its own step tells: the factor and the form of a right one, the
-//! fault of a wrong one, and all that hangs on the factors that others of the trace tell.
+//! The evidence of one logged polynomial in its own step: the factor and the form of a right one, the fault of a wrong
+//! one, and all that depends on the factors that other polynomials of the trace show.
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::ExpectedPolynomials,
@@ -16,12 +16,12 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// A logged polynomial and where it stands.
+/// A logged polynomial and its place.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct LoggedPolynomial<'a> {
     /// The polynomial's place.
     pub place: PolynomialPlace,
-    /// The polynomial's number among those of its pair.
+    /// The number of the polynomial within its pair.
     pub number: usize,
     /// The polynomial's coefficients, highest power first.
     pub list: &'a [f64],
@@ -34,20 +34,20 @@ pub(super) enum PolynomialJudgement {
     Right,
     /// The polynomial is right, and of the definition's form, not the course's.
     RightForm,
-    /// The polynomial tells no factor, and is right with some only.
+    /// The polynomial shows no factor, and is right only with some.
     Hangs,
     /// The polynomial is wrong.
     Wrong(Mismatch),
 }
 
-/// Returns how a polynomial compares with the course's form.
+/// Returns the comparison of a polynomial with the course's form.
 pub(super) fn compare_first(
     judged: &StepJudgement,
     expected: &ExpectedPolynomials,
     logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
     let own = expected.polynomial(logged.number);
-    // Where there is another form, nobody asks what is wrong with this one.
+    // If there is another form, the fault of this one does not matter.
     if expected.other_form(logged.number).is_some() && fits_with_no_factor(own, logged.list) {
         return Err(Mismatch::TooLong);
     }
@@ -55,8 +55,8 @@ pub(super) fn compare_first(
 }
 
 impl StepJudgement {
-    /// Notes what a polynomial says; `first` is its comparison with the course's form. One that hangs on factors is
-    /// kept to be settled if `is_known`, that is if its positions are known.
+    /// Notes what a polynomial shows; `first` is its comparison with the course's form. One that depends on factors is
+    /// kept for later if `is_known`, that is if its positions are known.
     pub(super) fn note(
         &mut self,
         expected: &ExpectedPolynomials,
@@ -72,7 +72,7 @@ impl StepJudgement {
             }
             PolynomialJudgement::Hangs
         };
-        // That another one of the course's form is right tells nothing new, whatever the other form says.
+        // That another polynomial of the course's form is right adds nothing new, whatever the other form shows.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
@@ -84,7 +84,7 @@ impl StepJudgement {
         let other = compare(right, list, &self.hints(place.pair.kind, number));
         match (first, other) {
             (Ok(found), other) => {
-                // A polynomial that says nothing of its own factor says nothing of the form either.
+                // A polynomial that does not show its own factor does not show the form either.
                 if other.is_err() && found.scale.is_some() && possible_factors(right, list).is_none() {
                     self.course_form = self.course_form.or(Some(place));
                 } else if other.is_err() {
@@ -132,7 +132,7 @@ impl StepJudgement {
         PolynomialJudgement::Right
     }
 
-    /// Notes the share of the tolerance that a right polynomial uses, and its factor, if it tells one.
+    /// Notes the share of the tolerance that a right polynomial uses, and its factor, if it shows one.
     #[inline]
     pub(super) fn take_share_and_factor(&mut self, kind: PairKind, number: usize, found: &Match) {
         self.shares.coefficient = self.shares.coefficient.max(found.share);
@@ -141,7 +141,8 @@ impl StepJudgement {
         }
     }
 
-    /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, where it tells.
+    /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, if it shows
+    /// that.
     pub(super) fn note_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
         let Some(right) = expected.other_form(logged.number) else { return };
         let is_of_course = || {
@@ -224,7 +225,7 @@ mod tests {
     use fosssim_findings::Role;
     use fosssim_model::sim::{Pair, Pass, Stage};
 
-    /// Returns whether polynomials that are right with factors between these, one after the other, are right with one.
+    /// Returns whether polynomials that are right with factors between these, in a row, are all right with one factor.
     fn are_right_with(bounds: &[[f64; 2]], factor: f64) -> bool {
         let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
         let pass = Pass { stage: Stage::ContinuousTime, index: 0 };

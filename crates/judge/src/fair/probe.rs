@@ -1,9 +1,9 @@
-//! How sensitive a step is: what roundings of its input do to its results and decisions.
+//! Measures how sensitive a step is: the effect of roundings of its input on its results and decisions.
 //!
 //! The step is repeated from perturbed states, each component off by a few roundings in a fixed random pattern. The
-//! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994), so contacts
-//! that graze, stiff springs, systems of bad condition and zones of nearly no extent get the room that they need, and
-//! nothing else gets any.
+//! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994). Grazing
+//! contacts, stiff springs, systems of bad condition and zones of nearly no extent get the tolerance that they need,
+//! and nothing else gets any.
 use super::{
     context::{Context, FollowedDecision, Records},
     formulas::BoundedPairMotion,
@@ -19,22 +19,21 @@ use fosssim_num::{
 /// The number of perturbed repetitions.
 pub(crate) const RUNS: u64 = 8;
 
-/// The sensitivity of a step, as far as it was measured: the largest deviations, component by component.
+/// The measured sensitivity of a step: the largest deviations, component by component.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
-    /// For each detection pass that of the positions that it sees, 2N each.
+    /// For each detection pass the sensitivity of the positions that it sees, 2N each.
     pub passes: Vec<Vec<f64>>,
-    /// That of the state at the synchronization point.
+    /// The sensitivity of the state at the synchronization point.
     pub mid: State,
-    /// That of the state at the end.
+    /// The sensitivity of the state at the end.
     pub end: State,
     /// Calls whose decisions flip.
     pub flipped: Vec<usize>,
 }
 
-/// Repeats a step whose decisions are known. Where the reference's own polynomials can't be solved from here (the
-/// trace's can, else nobody would ask), nothing is known, and nothing deviates: each value's own bounds are all that
-/// counts.
+/// Repeats a step whose decisions are known. If the reference's own polynomials can't be solved from here (the trace's
+/// can, or this would not be called), nothing is known, and nothing deviates: then only each value's own bounds count.
 pub(super) fn probe(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -146,7 +145,7 @@ impl PerturbedRun<'_> {
     }
 }
 
-/// Takes the known decisions, and notes what would have been decided.
+/// Takes the known decisions, and notes the decisions that it would have made.
 struct PerturbedRun<'a> {
     records: &'a Records<'a>,
     decisions: &'a [FollowedDecision],
@@ -155,7 +154,7 @@ struct PerturbedRun<'a> {
     /// Whether the positions that the pass sees must be noted anew.
     stale: bool,
     pass: usize,
-    /// The motion of the pair that is looked at.
+    /// The motion of the examined pair.
     motion: Option<BoundedPairMotion>,
     context: &'a Context<'a>,
 }
@@ -186,8 +185,8 @@ impl Steer for PerturbedRun<'_> {
         self.motion = Some(BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end));
     }
 
-    /// Changes a matrix by roundings of its largest entries, as a solver leaves the solution for such a one, wherever
-    /// it has an entry: the matrix's condition says what becomes of them (Wilkinson, J. ACM 8(3), 1961).
+    /// Changes a matrix by roundings of its largest entries, as a solver leaves the solution for such a matrix,
+    /// wherever it has an entry: the matrix's condition determines their effect (Wilkinson, J. ACM 8(3), 1961).
     fn system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();

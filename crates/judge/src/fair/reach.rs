@@ -1,8 +1,8 @@
-//! How far the reference's own run goes: which states of a trace lead nowhere.
+//! Finds the states of a trace that have no meaningful continuation, by the reach of the reference's own run.
 //!
-//! Steps are judged from the trace's own states, so a single wrong step can lead to where nothing is left to get wrong:
-//! numbers that are none, that are so large that everything else is round-off, or that are all the same. Such steps
-//! are never right, unless the reference itself gets there from the scene's start.
+//! Steps are judged from the trace's own states. A single wrong step can therefore lead to a state in which nothing is
+//! left to get wrong: numbers that are not finite, that are so large that everything else is round-off, or that are all
+//! the same. Such steps are never right, unless the reference itself gets there from the scene's start.
 use super::{
     context::{Context, Records},
     ordinary::OrdinaryRange,
@@ -16,7 +16,7 @@ use fosssim_model::{
 };
 use fosssim_num::vector::at;
 
-/// Compares states with the reference's own run, which is simulated as far as it is needed: for ordinary states not at
+/// Compares states with the reference's own run, which is simulated only as far as needed: for ordinary states not at
 /// all.
 #[derive(Debug)]
 pub(crate) struct Reach<'a> {
@@ -43,8 +43,8 @@ impl<'a> Reach<'a> {
     }
 
     /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary
-    /// states; else it is judged only if the reference gets there, too. Steps are asked about in their order. Besides
-    /// the judgement it says how much work that took, which ends soon beyond `most_work`.
+    /// states; else it is judged only if the reference gets there, too. The caller passes steps in their order. It also
+    /// returns the work, which ends soon beyond `most_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,
@@ -76,7 +76,7 @@ impl<'a> Reach<'a> {
         self.run.as_ref().is_some_and(|run| !run.is_lost)
     }
 
-    /// Returns the first particle that is where the reference never comes near.
+    /// Returns the first particle at a place that the reference never comes near.
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = self.range.beyond(state)?;

@@ -1,5 +1,5 @@
-//! Judges one step by the fair rules: follows it, looks at its sensitivity where something differs, and tries
-//! borderline decisions the other way where they can't be seen.
+//! Judges one step by the fair rules: follows it, measures its sensitivity if something differs, and tries borderline
+//! decisions the other way if they can't be seen.
 use super::{
     contact::{self, Tolerances},
     context::{Context, Records},
@@ -18,9 +18,9 @@ use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::same_bits};
 /// The number of borderline decisions of a hybrid step that are tried the other way, in all combinations.
 const MOST_FLIPS: usize = 4;
 
-/// Judges a step. `identical` says that states, impulses and polynomials of both records are the reference's bit for
-/// bit; then only what the records say besides is looked at. The reference has a result; if there is none here, it is
-/// what the trace logged that leads to a search without end.
+/// Judges a step. `identical` states that states, impulses and polynomials of both records are the reference's bit for
+/// bit; then only the rest of the records is checked. The reference has a result; if there is none here, the trace's
+/// log leads to an endless search.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -91,7 +91,7 @@ fn follow(
     Ok(second)
 }
 
-/// Charges differences between the two records of a step where they must agree (trace-format.md 2), and logs that no
+/// Counts differences between the two records of a step where they must agree (trace-format.md 2), and logs that no
 /// program with the course's library can have written.
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
@@ -112,8 +112,8 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
 }
 
-/// Returns whether the record holds what the course's library does not write: small leading coefficients that were not
-/// dropped, or more coefficients than any detection has.
+/// Returns whether the record holds a log that the course's library does not write: small leading coefficients that
+/// were not dropped, or more coefficients than any detection has.
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
     frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)

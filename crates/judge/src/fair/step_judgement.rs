@@ -19,7 +19,7 @@ pub(crate) struct StepJudgement {
     pub frame: u64,
     /// The first finding of each kind, in the order in which they were made.
     pub findings: Vec<Finding>,
-    /// How many more there are of each kind.
+    /// The number of further ones of each kind.
     pub more: FindingCounts,
     /// Decisions about pairs.
     pub decisions: u64,
@@ -27,20 +27,19 @@ pub(crate) struct StepJudgement {
     pub borderline: Vec<Borderline>,
     /// Factors of polynomials that are not the reference's bit for bit.
     pub scales: Scales,
-    /// How many calls of each kind have logged the reference's polynomials bit for bit.
+    /// The number of calls of each kind that logged the reference's polynomials bit for bit.
     pub same: ByKind<u64>,
     /// Polynomials that lost other coefficients than the reference's.
     pub lost: u64,
     /// Used shares of tolerances.
     pub shares: Shares,
-    /// A polynomial that is of the course's form and not of the right one.
+    /// A polynomial that is of the course's form and not of the right form.
     pub course_form: Option<PolynomialPlace>,
     /// A polynomial that is of the right form and not of the course's.
     pub right_form: Option<PolynomialPlace>,
-    /// Polynomials that are right with some factors only: whether the program uses such a one, only the whole trace
-    /// says.
+    /// Polynomials that are right only with some factors: the whole trace shows whether the program uses such a factor.
     pub pending: Vec<Pending>,
-    /// Whether anything is said of polynomials at positions that a response or the failsafe has led to, with its
+    /// Whether a finding is about polynomials at positions that come from a response or the failsafe, with its
     /// round-off.
     pub hangs: bool,
 }
@@ -72,13 +71,13 @@ impl StepJudgement {
         self
     }
 
-    /// Returns the factors that a polynomial may have whose coefficients tell its own only roughly: that of the same
-    /// polynomial of another pair of its kind, or 1. Factors of other polynomials vouch for nothing.
+    /// Returns the factors of a polynomial whose coefficients show its own only roughly: that of the same polynomial of
+    /// another pair of its kind, or 1. Factors of other polynomials prove nothing.
     pub(super) fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
         [self.scales[kind][number].last(), 1.0]
     }
 
-    /// Returns how many polynomials hang on factors.
+    /// Returns the number of polynomials that depend on factors.
     pub(super) fn pended(&self) -> u64 {
         self.pending.iter().map(|pending| pending.count).sum()
     }

@@ -15,10 +15,10 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, put};
 use std::collections::BTreeSet;
 
-/// The greatest number of pairs at one particle among which left-out ones are looked for: all choices are tried.
+/// The greatest number of pairs at one particle among which omitted ones are searched: all choices are tried.
 const MOST_AT_ONE: usize = 6;
 
-/// The greatest number of pairs that are looked at in one step.
+/// The greatest number of pairs that are examined in one step.
 const MOST_PAIRS: usize = 1 << 16;
 
 /// The greatest number of choices that are tried in one step.
@@ -30,7 +30,7 @@ struct NearPair {
     /// The changes of its particles' velocities that its force makes in this step.
     changes: [(usize, Vec2); 3],
     count: usize,
-    /// How often it was applied more than once: -1, 0 or 1. Unknown so far: `None`.
+    /// The number of surplus applications: -1, 0 or 1; `None` while it is unknown.
     excess: Option<f64>,
 }
 
@@ -44,8 +44,8 @@ impl NearPair {
     }
 }
 
-/// Returns how often a step from `before` applied the force of each near pair: never, once or twice. The reference ends
-/// in `own`. Pairs of which the velocities do not tell it are left out.
+/// Returns how many times a step from `before` applied the force of each near pair: never, once or twice. The reference
+/// ends in `own`. Pairs whose velocities do not show it are left out.
 #[must_use]
 pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
@@ -63,7 +63,7 @@ pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Ve
 }
 
 /// Returns the pairs that explain wrong velocities of a step from `before`, and the reference's result with these
-/// faults; `None` where nothing is explained.
+/// faults; `None` if nothing is explained.
 pub(super) fn explain(
     context: &Context<'_>,
     tolerances: &Tolerances<'_>,
@@ -98,16 +98,16 @@ pub(super) fn explain(
 
 /// The near pairs of a step.
 struct NearPairs {
-    /// Those whose particles all have wrong velocities.
+    /// The pairs whose particles all have wrong velocities.
     candidates: Vec<NearPair>,
-    /// Those whose force was applied once: a particle has a right velocity, and its forces do not cancel out.
+    /// The pairs whose force was applied once: a particle has a right velocity, and its forces do not cancel out.
     right: Vec<Pair>,
     /// See [`layer_of_contest`].
     layer: Option<(Scene, BTreeSet<Pair>)>,
 }
 
 impl NearPairs {
-    /// Finds how often the force of each pair was applied, as far as the velocities tell.
+    /// Finds how many times the force of each pair was applied, if the velocities show it.
     fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
         if scene.integrator.is_implicit() {
             // There all forces together have one effect.
@@ -168,8 +168,8 @@ impl NearPairs {
     }
 }
 
-/// Makes for a contest with a layer the scene with the force between all pairs, and the pairs whose force is due at
-/// positions `x`, since they overlap without their layers or one of them is a half-plane.
+/// Makes, for a contest with a layer, the scene with the force between all pairs. It also returns the pairs whose force
+/// is due at positions `x`, because they overlap without their layers or one object is a half-plane.
 fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {
         return None;
@@ -229,8 +229,8 @@ fn choices(pairs: usize) -> usize {
     (0..pairs).fold(1, |product, _| 3 * product)
 }
 
-/// Returns how often each of these pairs was applied too often, if one answer alone explains the rest of a particle's
-/// velocity.
+/// Returns the number of surplus applications of each of these pairs, if one answer alone explains the rest of a
+/// particle's velocity.
 fn only_choice(
     candidates: &[NearPair],
     open: &[usize],

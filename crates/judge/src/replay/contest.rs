@@ -1,4 +1,4 @@
-//! The order in which the reference looks at the bodies of a contest. It depends on all steps before, so that it is
+//! The order in which the reference checks the bodies of a contest. It depends on all steps before, so that it is
 //! followed as steps are read.
 use fosssim_model::{
     scene::Scene,

@@ -1,4 +1,4 @@
-//! The threads that judge what was read. Nothing of the results depends on how many there are.
+//! The threads that judge the batches. The results do not depend on their number.
 use super::{Batch, StepRules, StepSlot};
 use crate::{
     fair::{self, Records},
@@ -27,7 +27,7 @@ pub(super) struct Workers<'a> {
     scene: &'a Scene,
     root_search: RootSearch,
     one_by_one: bool,
-    /// How many are asked for; 0 leaves it to the machine.
+    /// The number of requested threads; 0 leaves it to the machine.
     threads: usize,
     list: Vec<Worker>,
     pool: Option<rayon::ThreadPool>,
@@ -39,7 +39,7 @@ impl<'a> Workers<'a> {
         Self { scene, root_search, one_by_one, threads: threads.min(MOST_THREADS), list: Vec::new(), pool: None }
     }
 
-    /// Has all threads started. Whether there is more than one.
+    /// Starts all threads, and returns whether there is more than one.
     pub(super) fn has_pool(&mut self) -> bool {
         let threads = match self.threads {
             0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MOST_THREADS),
@@ -63,8 +63,7 @@ impl<'a> Workers<'a> {
         self.list.resize_with(workers.max(self.list.len()), worker);
     }
 
-    /// Judges a batch, beside which nothing is read; one that is the trace's last on one thread unless more are asked
-    /// for.
+    /// Judges a batch while nothing is read. The trace's last batch uses one thread, unless more are requested.
     pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: [u64; 2], is_last: bool) {
         if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
             self.grow_to(1);
@@ -96,10 +95,10 @@ impl<'a> Workers<'a> {
 }
 
 /// Judges the steps of a batch that are not done, each by the next free worker, by each book until that takes more work
-/// than is left to it. Where nothing is left to the original's rules, the fair ones end as well.
+/// than is left to it. If nothing is left to the original's rules, the fair ones end as well.
 ///
-/// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. So the first
-/// step that a budget does not reach is always among those that were begun, whatever the number of threads.
+/// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. The first
+/// step that a budget does not reach is therefore always among those that were begun, whatever the number of threads.
 fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [rest, fair_rest]: [u64; 2]) {
     let slots = &batch.slots[..batch.filled];
     let (next, work, fair_work) = (AtomicUsize::new(0), AtomicU64::new(0), AtomicU64::new(0));

@@ -34,7 +34,7 @@ impl Pending {
         }
     }
 
-    /// Notes what is wrong about a polynomial of this step and frame, which does not [pass](super::passes).
+    /// Notes the fault of a polynomial of this step and frame, which does not [pass](super::passes).
     pub(crate) fn compare(
         &mut self,
         (step, frame): (u32, u64),
@@ -65,7 +65,7 @@ impl Pending {
         for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
             let rescaled = (own_coefficient * sum_actual) / sum_own;
             let residual = (coefficient - rescaled).abs();
-            // Parity's exception: NaN passes, because the original asks whether the distance is larger.
+            // Parity's exception: NaN passes, because the original tests whether the distance is larger.
             if residual > PARITY_COEFFICIENT {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
@@ -76,7 +76,7 @@ impl Pending {
         }
     }
 
-    /// Hands all on, where the lists have the same length.
+    /// Delivers all polynomials, if the lists have the same length.
     pub(crate) fn settle(&mut self, result: &mut StepResult) {
         for &(kind, count) in &self.runs {
             result.remarks.push(Remark::Polynomials(kind, count));

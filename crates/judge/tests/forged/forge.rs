@@ -95,7 +95,7 @@ fn scaled(list: &[f64], factor: f64) -> Polynomial {
 }
 
 impl Stage {
-    /// None where the scene logs no polynomials, or the reference has no result.
+    /// None if the scene logs no polynomials, or the reference has no result.
     pub fn of(name: &str, scene: Scene) -> Option<Self> {
         let frames = run(&scene, &mut ())?;
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
@@ -321,7 +321,7 @@ impl Change {
     }
 }
 
-/// The reason why a polynomial that is not the program's may pass, whatever others say: it is zero but for round-off
+/// The reason why a polynomial that is not the program's may pass, whatever others say: it is zero except for round-off
 /// and has numbers, so it may be anything; or it is right with the program's factor; or it is right with a factor that
 /// two of its coefficients agree on, or that takes nothing from it.
 fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {

@@ -1,5 +1,6 @@
-//! How well known mistakes are recognized: makes the traces of all mistakes and correct variants for the scenes of a
-//! folder, in memory, has each explained, and counts how often the first explanation is the mistake that was made.
+//! Measures how well known mistakes are recognized: makes the traces of all mistakes and correct variants for the
+//! scenes of a folder, in memory, explains each, and counts how often the first explanation is the mistake that was
+//! made.
 //!
 //! `scripts/explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
 //! correct variant is accused.
@@ -17,19 +18,19 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// How one trace was explained.
+/// The explanation of one trace.
 enum Outcome {
-    /// The trace is the correct one, bit for bit.
+    /// The trace is right, bit for bit.
     Same,
     /// The mistake is named first.
     First,
-    /// The mistake is among those that this trace can't tell from the first one.
+    /// The mistake is among those that this trace can't distinguish from the first one.
     Among(String),
     /// Something else is named.
     Other(String),
-    /// Nothing is named, though the parity rules find wrong steps.
+    /// No mistake is named, though the parity rules find wrong steps.
     Nothing(u64),
-    /// Nothing is named, and nothing is wrong but for round-off.
+    /// No mistake is named, and nothing is wrong except round-off.
     Unseen,
 }
 
@@ -80,7 +81,7 @@ fn main() -> anyhow::Result<ExitCode> {
     Ok(ExitCode::from(u8::from(accused)))
 }
 
-/// Says how many mistakes are recognized, and how many traces.
+/// Counts the recognized mistakes, and the traces.
 fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let best = |is: fn(&Outcome) -> bool| wrong.iter().filter(|(_, all)| all.iter().any(|one| is(&one.0))).count();
     let all = |is: fn(&Outcome) -> bool| wrong.iter().flat_map(|(_, all)| *all).filter(|one| is(&one.0)).count();

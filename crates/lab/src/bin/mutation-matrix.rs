@@ -1,10 +1,10 @@
-//! Which scene catches which mistake: makes the traces of every wrong sample and every correct variant on every scene
-//! of a folder, in memory, and judges them under each rule book. `scripts/mutation-matrix [FOLDER [PART-OF-AN-ID]]`
-//! builds and calls it.
+//! Finds the scenes that catch each mistake: makes the traces of every wrong sample and every correct variant on every
+//! scene of a folder, in memory, and judges them under each rule book. `scripts/mutation-matrix [FOLDER
+//! [PART-OF-AN-ID]]` builds and calls it.
 //!
-//! It prints one matrix per rule book, the mistakes that no scene catches, the variants that are refused, and a small
+//! It prints one matrix per rule book, the mistakes that no scene catches, the variants that are rejected, and a small
 //! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all
-//! (then no rule book could ever see it), when the fair rules miss one, and when they refuse a correct variant.
+//! (then no rule book could ever see it), when the fair rules miss one, and when they reject a correct variant.
 #![forbid(unsafe_code)]
 use fosssim_lab::runs::{WatchedScene, is_accepted, judged, trace};
 use fosssim_oracle::{
@@ -22,12 +22,12 @@ use std::{
 /// The result of a wrong sample or a variant on a scene, by one rule book.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Answer {
-    /// The trace is the correct one.
+    /// The trace is right.
     Same,
     /// Another trace, which is accepted.
     Accepted,
-    /// The trace is rejected for nothing but decisions that hang on coefficients which the course's library dropped as
-    /// too small: the factor of the polynomials is to blame, and the program really does something else then.
+    /// The trace is rejected only for decisions that depend on coefficients which the course's library dropped as too
+    /// small: the factor of the polynomials is the cause, and the program really does something else then.
     Lost,
     /// The trace is rejected.
     Refused,
@@ -91,7 +91,7 @@ fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool
         .collect()
 }
 
-/// Returns the correct variants that a rule book refuses, each with the scene.
+/// Returns the correct variants that a rule book rejects, each with the scene.
 fn accused<'a>(
     book: usize,
     rows: &[&'a Row],
@@ -116,7 +116,7 @@ fn cell(case: &WatchedScene, row: &Row) -> MatrixCell {
     [parity(&outcome), fair(&outcome)]
 }
 
-/// Returns whether this rule book refuses the trace.
+/// Returns whether this rule book rejects the trace.
 fn refused(cell: &MatrixCell, book: usize) -> bool {
     cell[book] == Answer::Refused
 }
@@ -163,8 +163,8 @@ fn print_list(title: &str, names: &[impl Display]) {
     println!();
 }
 
-/// Returns a small set of scenes that catches every mistake that can be caught: the scene with the most new ones first,
-/// then without those that others made superfluous.
+/// Returns a small set of scenes that catches every mistake that can be caught: the scene with the most new ones first;
+/// at the end superfluous scenes are removed.
 fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
         (0..rows.len()).filter(|&row| rows[row].kind == RowKind::Wrong && refused(&matrix[row][scene], book)).collect()

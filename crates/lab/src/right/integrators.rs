@@ -14,7 +14,7 @@ const NEWTON_LIMIT: u32 = 200;
 /// Systems with more unknowns than this take too long by singular values.
 const SVD_LIMIT: usize = 40;
 
-/// Advances the state; `None` where the step has no result.
+/// Advances the state; `None` if the step has no result.
 pub(super) fn advance(
     scene: &Scene,
     arithmetic: Arithmetic,

@@ -15,15 +15,15 @@ use fosssim_oracle::student::{Contact, Record, State, StepLog, Student};
 pub struct Arithmetic {
     /// The arithmetic's name in tables.
     pub name: &'static str,
-    /// How it adds forces up.
+    /// The order in which it adds forces up.
     pub sum: Sum,
-    /// How it solves linear systems.
+    /// The way in which it solves linear systems.
     pub solver: Solver,
     /// Whether products are fused with the sums that follow.
     pub fused: bool,
 }
 
-/// How contributions to one vector are added up.
+/// The ways to add up contributions to one vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
     /// The last first.
@@ -34,7 +34,7 @@ pub enum Sum {
     Compensated,
 }
 
-/// How linear systems are solved.
+/// The ways to solve linear systems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
     /// Elimination with pivots of the column.
@@ -66,12 +66,12 @@ impl Arithmetic {
         addend + a * b
     }
 
-    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `hear` is told the state and
-    /// the contacts after every step.
+    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `hear` gets the state and the
+    /// contacts after every step.
     ///
     /// # Errors
-    /// The steps so far, where a step has no result: a vortex force in an implicit step, or Newton's method that does
-    /// not converge.
+    /// The steps so far, if a step has no result: a vortex force in an implicit step, or Newton's method that does not
+    /// converge.
     pub fn trace(self, scene: &Scene, mut hear: impl FnMut(&State, &[Contact])) -> Result<Vec<u8>, Vec<u8>> {
         let mut state = start(scene);
         let mut forces = ForceTerms::new(scene, self);

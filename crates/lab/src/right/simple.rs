@@ -40,7 +40,7 @@ pub(super) fn handle(scene: &Scene, restitution: f64, state: &mut State) -> Vec<
     contacts
 }
 
-/// Answers a contact whose bodies approach; whether they do.
+/// Answers a contact if its bodies approach, and returns whether they do.
 fn answer(scene: &Scene, restitution: f64, v: &mut [f64], n: Vec2, shares: &[ImpulseShare]) -> bool {
     let speed = shares.iter().map(|&(particle, share)| share * at(v, particle)).sum::<Vec2>().dot(&n);
     if !(speed > 0.0) {

@@ -2,7 +2,7 @@
 //!
 //! Each explanation of a trace is a symptom with its alternatives: all words ([`Explanation::said`]) that would explain
 //! it as well. The word that the most traces allow is the likeliest. Words that exactly the same symptoms allow can't
-//! be told apart; a word that other traces with wrong polynomials of the same sort do not allow is none of them.
+//! be distinguished; a word that other traces with wrong polynomials of the same sort do not allow is none of them.
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
@@ -13,17 +13,17 @@ use super::{
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An explanation of a trace, and the words that would do as well, each with whether it explains all of it.
+/// An explanation of a trace, and the words that would explain it as well, each with whether it explains all of it.
 #[derive(Clone)]
 pub(super) struct Symptom {
     pub(super) one: Explanation,
     pub(super) allowed: BTreeMap<String, bool>,
 }
 
-/// A trace, and what is not explained of it yet.
+/// A trace, and the part of it that is not explained yet.
 pub(super) struct OpenTrace {
     pub(super) symptoms: Vec<Symptom>,
-    /// Whether something that is told explains a part of it.
+    /// Whether a reported explanation covers a part of it.
     pub(super) is_covered: bool,
 }
 
@@ -36,7 +36,7 @@ impl OpenTrace {
         self.symptoms.iter().any(|symptom| symptom.allowed.get(said) == Some(&true))
     }
 
-    /// Returns whether it needs this mistake beside others: they reproduce it together, and neither does alone.
+    /// Returns whether it needs this mistake in addition to others: they reproduce it together, and neither does alone.
     pub(super) fn needs(&self, said: &str) -> bool {
         self.symptoms.iter().any(|symptom| symptom.one.is_complete() && symptom.one.key == said)
     }
@@ -65,20 +65,20 @@ pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bo
     list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(of_one).collect()
 }
 
-/// All that speaks for one word.
+/// The evidence for one word.
 #[derive(Default)]
 struct Support<'a> {
     /// The symptoms that allow it: the trace, and the place in its list.
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
     complete: usize,
-    /// Traces that tell it first.
+    /// Traces that report it first.
     first: usize,
     /// The number of traces in which the same is wrong, in whatever way.
     kin: usize,
     /// Traces in which the same polynomials are wrong in another way.
     against: usize,
-    /// The explanation in these words that says most.
+    /// The most detailed explanation with these words.
     told: Option<&'a Explanation>,
 }
 
@@ -88,8 +88,8 @@ impl Support<'_> {
         self.against > 0 && self.against >= self.complete
     }
 
-    /// Returns the weight of an explanation. All that is seen of a stage says that it is wrong; what most of it says is
-    /// wrong with it.
+    /// Returns the weight of an explanation. Every symptom of a stage shows that it is wrong; the most frequent ones
+    /// show in what way.
     fn weight(&self) -> (usize, usize, usize) {
         (self.complete.max(self.kin), self.traces.max(self.kin), self.complete)
     }
@@ -104,7 +104,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
                 evidence.first += usize::from(place == 0 && *word == said);
-                // Of those in the same words, the one whose exact form says most.
+                // Of explanations with the same words, the one with the longest exact form.
                 let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
                 let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.one);
                 if *word == said && evidence.told.is_none_or(says_more) {
@@ -129,8 +129,8 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     all
 }
 
-/// Returns whether a trace's explanation, which does not allow it, speaks against what is told of polynomials: the same
-/// ones are wrong.
+/// Returns whether a trace's explanation, which does not allow it, contradicts the reported polynomials: the same ones
+/// are wrong.
 fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.about {
         About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
@@ -141,8 +141,8 @@ fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
     is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
-/// Returns the likeliest mistake behind what is open: the one that the most traces allow. Ties go to mistakes of the
-/// catalogue, then to the one that is told first more often, then to the one that is told earlier.
+/// Returns the likeliest mistake behind the open symptoms: the one that the most traces allow. Ties go to mistakes of
+/// the catalogue, then to the one that is reported first more often, then to the earlier one.
 pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = evidence(open);
     let is_known = |word: &str| find(word).is_some();
@@ -152,7 +152,7 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
         let order = b.symptoms.first().cmp(&a.symptoms.first());
         a.weight().cmp(&b.weight()).then(known).then(a.first.cmp(&b.first)).then(order)
     })?;
-    // Words that the same symptoms allow can't be told apart.
+    // Words that the same symptoms allow can't be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
         **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
@@ -166,12 +166,12 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     Some(Explanation { same_as, ..united(told, open) })
 }
 
-/// Returns an explanation with the polynomials of all traces that say the same of others, and with no other exact form
-/// than those that all of them allow.
+/// Returns an explanation with the polynomials of all traces that report the same, and with only those exact forms that
+/// all of them allow.
 fn united(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.said();
-    // Of what speaks against it, nothing is reproduced.
+    // Nothing of a contradicting trace is reproduced.
     let against = open.iter().filter(|trace| !trace.allows(&said)).flat_map(|trace| &trace.symptoms);
     told.samples +=
         against.filter(|symptom| speaks_against(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();

@@ -17,24 +17,24 @@ use fosssim_model::{
 };
 use fosssim_student::{Area, Row, assignments::t2m2::Subject, find};
 
-/// Scenes with more pairs than this are not explained where steps log polynomials: a step of the reference, which
-/// explanations keep whole, takes some hundred bytes a pair. Where numbers end is told all the same.
+/// Scenes with more pairs than this are not explained if steps log polynomials: a step of the reference, which
+/// explanations keep whole, takes some hundred bytes a pair. The first value without a number is reported all the same.
 const MOST_PAIRS: usize = 400_000;
 
-/// Returns the likely mistakes of the program that left this trace, the likeliest first; empty when nothing is wrong,
-/// or when nothing that is known explains it.
+/// Returns the likely mistakes of the program that left this trace, the likeliest first; empty if nothing is wrong, or
+/// if no known mistake explains it.
 ///
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
 /// Else explanations of polynomials come first that reproduce all their samples, then those that reproduce a part. The
-/// judge says whether a trace is right: callers ask this about traces that the fair rules reject. Traces of any content
-/// are accepted; what follows the first 64 MiB is passed over, and so is the record in which a trace breaks off. A
+/// judge decides whether a trace is right: callers use this for traces that the fair rules reject. Traces of any
+/// content are accepted; bytes behind the first 64 MiB are ignored, and so is the record in which a trace breaks off. A
 /// trace of another scene yields only the question whether it is of this one ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::whole(trace))
 }
 
-/// Explains what was kept of a trace, as [`explain`] does.
+/// Explains the kept part of a trace, as [`explain`] does.
 #[must_use]
 pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
@@ -46,7 +46,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         return not_finite::find_in_trace(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
-    // Of a contest's program only the search for near pairs is its student's.
+    // In a contest's program the student writes only the search for near pairs.
     let is_contest = scene.assignment() == Assignment::T2M3;
     let pairs = if is_contest { near::explain(&mut reference, scene, &scan) } else { None };
     let KnownMistakes { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
@@ -75,7 +75,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         // The same mistake in other words, with its terms and an example of its own.
         let is_told = |own: &Explanation| !own.is_unexplained() && own.is_complete();
         for own in std::mem::take(&mut polynomials).into_iter().filter(is_told) {
-            // The remedy stays last. The same mistake by the same name has been said.
+            // The remedy stays last. The same mistake by the same name is reported already.
             let remedy = explanation.details.len().saturating_sub(1);
             if !explanation.key.ends_with(&own.key) {
                 explanation.details.splice(remedy..remedy, own.details);
@@ -84,10 +84,10 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         }
     }
     if known.iter().any(Explanation::is_complete) {
-        // It reproduces the polynomials, too: what is said about them besides only follows from it.
+        // It reproduces the polynomials, too: their other faults only follow from it.
         polynomials.clear();
     }
-    // Where another mistake keeps it from explaining whole steps, it may still explain all polynomials.
+    // If another mistake keeps it from explaining whole steps, it may still explain all polynomials.
     known.retain(|one| {
         let is_told = |other: &Explanation| {
             other.is_complete() && find(&one.key).is_some_and(|row| is_in_other_words(other, row))
@@ -100,7 +100,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
     });
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
-        // Where pairs come in another order, polynomials of one are not those of another.
+        // If pairs come in another order, polynomials of one are not those of another.
         polynomials.clear();
     }
     let mut all = known;
@@ -115,7 +115,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all
 }
 
-/// Says once, behind an explanation's formulas, that their letters are to be explained.
+/// Notes once, behind an explanation's formulas, that their letters need an explanation.
 fn explain_letters(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;
@@ -125,7 +125,7 @@ fn explain_letters(explanation: &mut Explanation) {
         About::Mistake => row.and_then(Row::kind_of_pair).into_iter().collect(),
         about => about.kinds(),
     };
-    // A known mistake's last line says where to look.
+    // A known mistake's last line names the place to check.
     let end = explanation.details.len() - usize::from(row.is_some());
     if end > 0 {
         explanation.details.insert(end, Detail::Letters(kinds));

@@ -1,5 +1,5 @@
-//! The explanations that the traces of one program give together: the likeliest word, and of what it leaves open the
-//! next ones ([`evidence`](super::evidence)).
+//! The explanations that the traces of one program give together: the likeliest word, and the next ones for what it
+//! leaves open ([`evidence`](super::evidence)).
 use super::{
     Detail, Explanation, Guess, ListGuess,
     about::{About, OfPolynomials},
@@ -14,21 +14,21 @@ use fosssim_model::sim::PairKind;
 use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The greatest number of mistakes that are told of a program, besides stages that are still empty.
+/// The greatest number of mistakes that are reported for a program, in addition to stages that are still empty.
 const MOST: usize = 3;
 
-/// Among this number of traces, one that looks as if a stage were empty is no evidence.
+/// With this number of traces, a single one that looks as if a stage were empty is no evidence.
 const MANY: usize = 8;
 
-/// Returns the likely mistakes of a program that left several traces, at most three besides stages that are still
-/// empty, which count as one and are told first. `refuted` are keys of mistakes that right traces of the same program
-/// speak against. Where numbers end counts as none, and comes last: it follows from the others.
+/// Returns the likely mistakes of a program that left several traces, at most three in addition to stages that are
+/// still empty, which count as one and come first. `refuted` are keys of mistakes that right traces of the same program
+/// contradict. The first value without a number does not count, and comes last: it follows from the others.
 ///
-/// A scene alone often can't tell mistakes apart; several together nearly always can.
+/// A scene alone often can't distinguish mistakes; several together nearly always can.
 #[must_use]
 pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
-    // A stage of which one trace shows something is not empty, whatever the others look like.
+    // A stage of which one trace shows something is not empty, whatever the other traces look like.
     let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
@@ -82,7 +82,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
     unfinished(empty).into_iter().chain(found).chain(end).collect()
 }
 
-/// Returns where numbers end, in the stage in which they end in most traces.
+/// Returns the first values that are not numbers, in the stage in which most traces have them.
 fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.said() == one.said()).count();
@@ -97,7 +97,7 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     Some(likeliest)
 }
 
-/// Returns the detections whose coefficients are all zero, where that is what it says.
+/// Returns the detections whose coefficients are all zero, if the explanation is about these.
 fn zeros(one: &Explanation) -> Vec<Explanation> {
     let is_zero =
         matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
@@ -119,8 +119,8 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
     kinds.filter_map(row).map(told).collect()
 }
 
-/// Returns several stages that are still empty as one explanation; their keys are in [`Explanation::same_as`]. One for
-/// which something else would do as well is told for itself.
+/// Returns several stages that are still empty as one explanation; their keys are in [`Explanation::same_as`]. A stage
+/// for which there is another explanation is reported by itself.
 fn unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
     let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
     let (doubted, sure): (Vec<Explanation>, Vec<Explanation>) = empty.into_iter().partition(has_rival);
@@ -138,8 +138,8 @@ fn unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
     std::iter::once(all).chain(doubted).collect()
 }
 
-/// Returns the polynomials that are wrong in most traces, where no exact form holds in most and what comes first says
-/// nothing of them: their place, and what most traces say of them without an exact form.
+/// Returns the polynomials that are wrong in most traces, if no exact form holds in most and the first explanation does
+/// not cover them: their place, and what most traces report of them without an exact form.
 fn wrong_polynomials(
     traces: &[Vec<Explanation>],
     found: &[Explanation],
@@ -181,8 +181,9 @@ fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
     open.iter().any(|trace| trace.is_covered && trace.needs(&said))
 }
 
-/// Returns whether a further mistake is one that was told, in other words: a program has one formula for a polynomial
-/// and for a contact vector, and what is seen of a stage may follow from what is told of that one or of one before it.
+/// Returns whether a further mistake repeats a reported one in other words: a program has one formula for a polynomial
+/// and for a contact vector, and the symptoms of a stage may follow from a mistake that is reported for it or for an
+/// earlier one.
 fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
@@ -191,7 +192,7 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
             return false;
         }
         let theirs = one.subjects();
-        // Where a trace shows no polynomial of a known mistake, that may be one of which a guess is told.
+        // If a trace shows no polynomial of a known mistake, that mistake may be the one behind a reported guess.
         let is_guess = matches!(one.about, About::Polynomials { .. });
         let kind = find(&next.key).filter(|row| is_formula(row.area)).and_then(Row::kind_of_pair);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
@@ -217,7 +218,7 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
     found.iter().any(is_said)
 }
 
-/// Drops what may follow from a mistake that explains one of the traces, where steps log states only.
+/// Drops explanations that may follow from a mistake that explains one of the traces, if steps log states only.
 fn drop_what_follows(open: &mut Vec<OpenTrace>) {
     let is_of_states = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_of_states(word));
@@ -243,9 +244,9 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let late = CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest));
     let explained = |row: &Row| open.iter().filter(|trace| trace.allows_wholly(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
-    // An explanation that says what is wrong with the stage speaks for those that only say that something is.
+    // An explanation of what is wrong with the stage covers those that only name the stage.
     let is_said = all().any(|one| is_of_it(one) && !one.is_vague());
-    // In another order, polynomials of one pair stand where those of another are looked for.
+    // In another order, polynomials of one pair are in the places of another's.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
     let has_order = all().any(|one| one.key == Explanation::ORDER);
     for trace in open.iter_mut() {
@@ -271,15 +272,14 @@ const fn stage_of(area: Area) -> Option<StepStage> {
     }
 }
 
-/// Returns whether traces enough look as if this stage were empty.
+/// Returns whether enough traces look as if this stage were empty.
 fn is_seen_again(open: &[OpenTrace], said: &str) -> bool {
     open.len() < MANY || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
 }
 
-/// Returns whether enough of what is left names this further mistake: a trace that nothing explains yet, one that needs
-/// it beside a mistake that was told, or two others, where there are several. Traces in which a stage looks wrong count
-/// only where nothing explains them, and one alone may follow from what was found before. That polynomials are missing
-/// does.
+/// Returns whether enough of the open symptoms name this further mistake: a trace that nothing explains yet, one that
+/// needs it in addition to a reported mistake, or two others, if there are several. Traces in which a stage looks wrong
+/// count only if nothing explains them, and one alone may follow from an earlier mistake, as missing polynomials do.
 fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     let said = next.said();
     let naming = |is_covered: bool| {
@@ -292,7 +292,7 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     !next.is_of_missing() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
 }
 
-/// Leaves what this doesn't explain: of a trace that it explains only what is complete besides.
+/// Keeps what this doesn't explain: of a trace that it explains, only other complete explanations.
 fn leave_open(open: &mut [OpenTrace], said: &str) {
     for trace in open.iter_mut().filter(|trace| trace.allows(said)) {
         trace.is_covered = true;

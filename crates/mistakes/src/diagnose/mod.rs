@@ -1,7 +1,8 @@
 //! From findings to the likely mistake.
 //!
-//! Knows nothing of processes and reports. It looks at the steps of a trace that the fair rules find wrong, asks which
-//! mistake reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make sentences.
+//! Knows nothing of processes and reports. It takes the steps of a trace that the fair rules find wrong, finds the
+//! mistake that reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make
+//! sentences.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod evidence;

@@ -15,8 +15,8 @@ pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Expl
     Explanation { key: row.id.to_owned(), about: About::Mistake, details, same_as, ..one.clone() }
 }
 
-/// Returns whether these explanations of a trace name it, told or as not to be told apart; of what is not written yet,
-/// one stage.
+/// Returns whether these explanations of a trace name it, reported or as indistinguishable; for work that is not
+/// written yet, one stage.
 #[must_use]
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
@@ -38,8 +38,8 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
 }
 
 /// Returns the words ([`Explanation::said`]) that explain as much as this explanation of a trace: its own, those that
-/// it can't tell apart, and all that would make its polynomials as they are. Each with whether it explains all that
-/// this is about.
+/// it can't distinguish, and all that would make the same polynomials. Each comes with whether it explains everything
+/// that this explanation is about.
 pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
     let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.said(), one.is_settled())]);

@@ -1,7 +1,8 @@
-//! From which step on a trace holds what is no finite number, and which stage of the step makes it of numbers.
+//! Finds the step from which a trace holds values that are not finite numbers, and the stage of the step that makes the
+//! first one of numbers.
 //!
-//! NaN spreads: whatever is computed of it is NaN, and comparisons with it are false. So only the first stage whose
-//! input was numbers and whose output is not says anything, and nothing behind it proves any mistake.
+//! NaN spreads: every result that is computed from it is NaN, and comparisons with it are false. Only the first stage
+//! whose input was numbers and whose output is not proves a mistake; later stages prove none.
 use super::{
     Explanation,
     about::About,
@@ -15,8 +16,8 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
-/// Returns the explanation of the first value of a kept trace that is no finite number, and no other explanation; empty
-/// where all values are finite, or where the reference comes to the same.
+/// Returns the explanation of the first value of a kept trace that is not a finite number, and no other explanation. It
+/// is empty if all values are finite, or if the reference has the same values.
 #[must_use]
 pub fn not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     find_in_trace(scene, trace.into())
@@ -33,16 +34,16 @@ pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanatio
     first.explanation().into_iter().collect()
 }
 
-/// Looks for the first value that is no finite number, step by step.
+/// Finds the first value that is not a finite number, step by step.
 #[derive(Default)]
 pub(super) struct FirstNotFinite {
     is_found: bool,
-    /// Nothing where the reference comes to the same.
+    /// The first such value; `None` if the reference has the same.
     told: Option<NotFinite>,
 }
 
 impl FirstNotFinite {
-    /// Looks at the first record.
+    /// Checks the first record.
     pub(super) fn begin(&mut self, frames: &StepFrames) {
         if let Some(wild) = wild_value(&frames.before.state) {
             let told = NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan(), ends: false };
@@ -50,7 +51,7 @@ impl FirstNotFinite {
         }
     }
 
-    /// Looks at a step: is it the first one, or finite again?
+    /// Checks a step: is it the first one, or finite again?
     pub(super) fn step(&mut self, reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) {
         if self.is_found {
             let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(is_wild);
@@ -93,8 +94,8 @@ fn is_wild(frame: &LenientFrame) -> bool {
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
-/// Returns the stage of a step that leaves what is no number, of a state that is numbers; nothing where the reference
-/// does as well.
+/// Returns the stage of a step that makes a value that is not a number, from a state of numbers; `None` if the
+/// reference does so as well.
 fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
@@ -138,7 +139,7 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
 }
 
 /// Returns the stage in the one pass of `continuous-time`, where each contact is resolved before the next pair is
-/// looked at.
+/// checked.
 fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64)>) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
     let place = |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|one| one == pair));

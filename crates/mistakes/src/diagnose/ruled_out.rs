@@ -1,4 +1,4 @@
-//! Which mistakes are none of a program, whatever its wrong traces say.
+//! Finds mistakes that a program does not make, whatever its wrong traces suggest.
 use super::{
     Explanation, about::About, heads::several, known::shows_within, naming::alternatives, not_finite::find_in_trace,
     sampling::Source, written::is_written,
@@ -7,10 +7,10 @@ use fosssim_model::{assignments::Assignment, scene::Scene};
 use fosssim_student::{Area, Student, find, trace_within};
 use std::{cell::Cell, collections::BTreeMap};
 
-/// The greatest number of traces in which it is asked whether a mistake makes numbers end.
+/// The greatest number of traces that are simulated to see whether a mistake makes values that are not numbers.
 const MOST_ENDS: usize = 6;
 
-/// And the number of polynomials in a step after which a program goes on for ever.
+/// The number of polynomials in a step after which a program counts as endless.
 const MOST_POLYNOMIALS: usize = 200_000;
 
 /// Keys that are named, of mistakes in code that a student of this milestone does not write.
@@ -28,7 +28,8 @@ fn supplied(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String
     named.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
 }
 
-/// Returns whether each trace in which numbers end does so, too, when a program makes one of these mistakes alone.
+/// Returns whether each trace with values that are not numbers also has them when a program makes one of these mistakes
+/// alone.
 fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
@@ -39,11 +40,11 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
-/// Keys of mistakes that [`several`] would tell, or name as what can't be told apart, and that are none: in code that a
-/// student of this milestone does not write, or such that right scenes speak against them. The program was right there,
-/// and with the mistake it would not have been ([`shows`](super::known::shows)). Each integrator has a file of its own,
-/// so that of its mistakes only scenes of the same one know anything. Where numbers end is among the keys if the
-/// mistakes that are told make that end themselves.
+/// Returns the keys of mistakes that [`several`] would report, or name as indistinguishable, and that the program does
+/// not make: they are in code that a student of this milestone does not write, or right scenes contradict them. The
+/// program was right there, and with the mistake it would not have been ([`shows`](super::known::shows)). Each
+/// integrator has a file of its own, so that only scenes with it show its mistakes. The key of values that are not
+/// numbers is included if the reported mistakes make such values themselves.
 #[must_use]
 pub fn refuted(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
@@ -57,7 +58,7 @@ pub fn refuted(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], ri
     let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied(whose, wrong));
     loop {
         let likely = several(traces(), &refuted);
-        // An explanation of unfinished work stands for its stages.
+        // An explanation of unfinished work covers its stages.
         let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
         match keys.find(|key| is_denied(key, &Cell::new(0))).cloned() {

@@ -1,19 +1,19 @@
-//! One trace's own explanations, in the light of what all traces of its program say together.
+//! One trace's own explanations, corrected by what all traces of its program show together.
 use super::{About, Explanation, WrongPairs, is_named_in, naming::as_row};
 use fosssim_student::find;
 
-/// The explanations of one trace, once all traces of its program have been heard.
+/// The explanations of one trace, once all traces of its program are known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SettledTrace {
     /// The explanations, the likeliest first.
     pub explanations: Vec<Explanation>,
-    /// The number of explanations, the first ones, that all traces together give; this trace alone gives the others.
+    /// The number of explanations at the front that all traces together give; this trace alone gives the others.
     pub agreed: usize,
 }
 
-/// Settles a trace's own explanations by those of all traces together ([`several`](super::several)). Where any of these
-/// explains the trace, they are all that is said: in the place of the trace's own ones, which can't tell as much, but
-/// with its counts and its example. Else the trace keeps its own, without those that are `refuted`.
+/// Settles a trace's own explanations by those of all traces together ([`several`](super::several)). If any of these
+/// explains the trace, they replace the trace's own, which know less, but keep its counts and its example. Else the
+/// trace keeps its own, without those that are `refuted`.
 #[must_use]
 pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
@@ -21,12 +21,12 @@ pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) 
     if explanations.is_empty() {
         return SettledTrace { explanations: own.iter().filter_map(|one| without(one, refuted)).collect(), agreed: 0 };
     }
-    // Where numbers end each trace says for itself.
+    // Each trace reports for itself where values stop being numbers.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
     SettledTrace { agreed: explanations.len(), explanations }
 }
 
-/// Returns the explanation without what is refuted; nothing where that is all of it.
+/// Returns the explanation without refuted parts; `None` if no part is left.
 fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     let mut same_as = one.same_as.iter().filter(|key| !refuted.contains(key)).cloned();
     if !refuted.contains(&one.key) || one.is_not_finite() {
@@ -36,14 +36,14 @@ fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     Some(as_row(one, row, same_as.collect()))
 }
 
-/// Returns this explanation as the trace shows it; nothing where the trace's own ones do not name it.
+/// Returns this explanation as the trace shows it; `None` if the trace's own ones do not name it.
 fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
-        // Each trace may say more of them.
+        // Each trace may show more of them.
         return Vec::new();
     }
     if likely.is_unfinished() {
-        // Each stage for itself: not every trace shows all of them.
+        // Each stage by itself: not every trace shows all of them.
         return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
     }
     let shown = own.iter().find(|one| is_named_in(likely, std::slice::from_ref(one)));
@@ -79,8 +79,8 @@ mod tests {
         }
     }
 
-    /// One scene takes a loop that is one round short for an empty one; together they know better, and then it says so,
-    /// too.
+    /// A scene alone takes a loop that is one round short for an empty one; all scenes together know better, and the
+    /// scene's explanation must follow them.
     #[test]
     fn a_scene_says_what_all_scenes_together_know() {
         let short = named("loop-one-fewer", &[], (7, 7));

@@ -1,12 +1,12 @@
-//! Which mistakes a student of a milestone can make: those in the parts that the student writes.
+//! Finds the mistakes that a student of a milestone can make: those in the parts that the student writes.
 use fosssim_model::{
     assignments::{Assignment, Part},
     scene::Scene,
 };
 use fosssim_student::{Area, Mistake, Row, StepMistake, Term};
 
-/// Returns whether a student of this milestone writes the code in which the mistake is made, or hands in its file; what
-/// is written to a trace, and how a program ends, may be anybody's.
+/// Returns whether a student of this milestone writes the code of the mistake, or hands in its file. Every student may
+/// change what is written to a trace, and how a program ends.
 #[must_use]
 pub fn is_written(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
@@ -21,8 +21,7 @@ pub fn is_written(row: &Row, whose: Assignment) -> bool {
     whose.definition().student.iter().any(is_of)
 }
 
-/// Returns the quantity in which a mistake of forces, integrators and what follows from them is made: a row's name
-/// begins with it.
+/// Returns the quantity of a mistake in forces, integrators and what depends on them: a row's name begins with it.
 pub(super) fn term(row: &Row) -> Term {
     if let Mistake::Step(StepMistake::Edit(edit)) = row.mistake {
         return edit.term;
@@ -42,7 +41,7 @@ pub(super) fn term(row: &Row) -> Term {
     }
 }
 
-/// Returns the milestone of a submission that runs on these scenes: the first one whose programs know all of them.
+/// Returns the milestone of a submission that runs on these scenes: the first whose programs know all of them.
 #[must_use]
 pub fn milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
     let of_scene = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();

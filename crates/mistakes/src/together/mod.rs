@@ -1,4 +1,4 @@
-//! The likely mistakes of one submission, as its scenes tell them together.
+//! The likely mistakes of one submission, which its scenes show together.
 
 use crate::diagnose::{is_named_in, settled, several};
 use fosssim_findings::{
@@ -12,8 +12,8 @@ use told::{cut_result, cut_smallest};
 
 pub mod told;
 
-/// Returns the grade with no more of its scenes than hints tell students, and nothing of other submissions. Groups that
-/// students do not see are in it, too.
+/// Returns the grade with no more about its scenes than hints allow for students, and nothing about other submissions.
+/// Groups that students do not see are in it, too.
 #[must_use]
 pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     let is_all_told = grade.groups.iter().all(|group| group.hints == Hints::Full);
@@ -36,9 +36,9 @@ pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(told)
 }
 
-/// Returns the grade with nothing in it but what students see at once: points and verdict are those of the groups that
-/// are left, and hints say how much is told of their scenes ([`told_to_students`]). Unless the suite shows all that
-/// programs print, scenes tell their verdicts only ([`withhold`](fosssim_findings::SceneResult::withhold)).
+/// Returns the grade with only what students see immediately: points and verdict are those of the remaining groups, and
+/// hints limit the reports on their scenes ([`told_to_students`]). Unless the suite shows all that programs print,
+/// scenes have their verdicts only ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
 pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
@@ -66,8 +66,9 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(visible)
 }
 
-/// Returns the smallest scenes that students may see: made from a scene of a group that they see at once, and with no
-/// more than its hints tell. There is none where the suite withholds what programs chose, since they are that.
+/// Returns the smallest scenes that students may see: made from a scene of a group that they see immediately, and with
+/// no more than its hints allow. There is none if the suite withholds what programs chose, because smallest scenes
+/// depend on it.
 fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
     let told = |small: &SmallestScene| {
         let is_origin = |scene: &SceneGrade| scene.scene == small.origin;
@@ -83,7 +84,7 @@ fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
 #[must_use]
 pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
     let is_mended = |scene: &SceneGrade| {
-        // Where several are proven, they reproduce the steps together only.
+        // If several are proven, they reproduce the steps only together.
         let mut proven = scene.explanations.iter().filter(|one| one.is_proven()).peekable();
         proven.peek().is_some() && proven.all(|one| is_named_in(mistake, std::slice::from_ref(one)))
     };
@@ -99,17 +100,17 @@ pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
     grade.groups.iter().filter(|group| !group.extra).map(of_group).sum::<f64>() + 0.0
 }
 
-/// Returns the mistake that explains most wrong scenes, where several have explanations: together they nearly always
-/// tell mistakes apart that one scene can't.
+/// Returns the mistake that explains most wrong scenes, if several have explanations: together they nearly always
+/// distinguish mistakes that one scene can't.
 #[must_use]
 pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
     let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
     if explained > 1 { likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
 }
 
-/// Returns the likely mistakes, at most three, with the number of wrong scenes that each explains: the one that
-/// explains most, then of what is left the one that explains most of it, provided that it explains it completely
-/// ([`several`]).
+/// Returns the likely mistakes, at most three, with the number of wrong scenes that each explains: first the mistake
+/// that explains most, then the mistake that explains most of the rest, provided that it explains those scenes
+/// completely ([`several`]).
 #[must_use]
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     several(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
@@ -121,14 +122,15 @@ pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
         .collect()
 }
 
-/// Returns how many scenes' explanations name this mistake, or a stage of what is not written yet.
+/// Returns the number of scenes whose explanations name this mistake, or an unwritten stage.
 #[must_use]
 pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
 }
 
-/// Settles by all scenes together what is said of each: by several that are wrong, or by right ones that speak against
-/// a mistake. A caller that leaves groups out of a grade asks again, so that nothing of them is told.
+/// Settles the explanations of each scene by all scenes together: by several wrong ones, or by right ones that
+/// contradict a mistake. A caller that leaves groups out of a grade calls it again, so that nothing of them is
+/// revealed.
 pub fn settle(grade: &mut Grade) {
     let speak_together = !grade.refuted.is_empty() || likely_mistake(grade).is_some();
     let likely = if speak_together { likely_mistakes(grade) } else { Vec::new() };

@@ -8,8 +8,8 @@ use fosssim_findings::{
 };
 use fosssim_student::find;
 
-/// Cuts a result down to a level. The verdict, its reason and where the rule books differ stay at all levels, but at
-/// [`Hints::None`] a wrong trace is not told in what it is wrong.
+/// Cuts a result down to a level. The verdict, its reason and the difference of the rule books stay at all levels, but
+/// at [`Hints::None`] the fault of a wrong trace is removed.
 pub fn cut_result(hints: Hints, result: &mut SceneResult) {
     if hints == Hints::Full {
         return;
@@ -22,7 +22,7 @@ pub fn cut_result(hints: Hints, result: &mut SceneResult) {
     result.card = result.card_for_students.take();
 }
 
-/// Cuts a smallest scene down to a level, in which it is nothing where that is [`Hints::None`].
+/// Cuts a smallest scene down to a level; at [`Hints::None`] nothing is left.
 #[must_use]
 pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
     small.explanations = cut(hints, std::mem::take(&mut small.explanations));
@@ -30,15 +30,14 @@ pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestSc
     (hints > Hints::None).then_some(small)
 }
 
-/// Cuts explanations down to a level: below [`Hints::What`] there is only where numbers end, if they do
-/// ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At that level each says what is wrong, in a
-/// sentence without formulas, and which known mistakes can't be told apart from it; exact forms and examples need
-/// [`Hints::Full`].
+/// Cuts explanations down to a level: below [`Hints::What`] only the first value without a number is left, if there is
+/// one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each has a sentence without
+/// formulas, and the known mistakes that can't be distinguished from it; exact forms and examples need [`Hints::Full`].
 #[must_use]
 pub fn cut(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
-        // Where it is, and nothing that is guessed.
+        // The place, and no guesses.
         Hints::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
         Hints::What => explanations
             .into_iter()
@@ -95,7 +94,7 @@ mod tests {
         assert_eq!(told(Hints::Full), [explanation()]);
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
-            // Where numbers end is a place and no guess.
+            // The first value without a number is a place and no guess.
             let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true, ends: false };
             let end = Explanation { about: About::NotFinite(end), ..explanation() };
             assert_eq!(cut(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");

@@ -1,9 +1,9 @@
-//! The course's assignments: what each one has programs detect, log and drop, what its starter library knows, and what
+//! The course's assignments: what the programs of each detect, log and drop, what its starter library knows, and what
 //! its student writes.
 //!
-//! A [`Definition`] says it as data, one file per assignment here. What else is bound to an assignment - suites, the
-//! catalogue of mistakes, formulas, probe scenes - stands in a folder `assignments/<key>` of the room that has such a
-//! thing. Readers of traces, simulator and judge ask the assignment of a scene, which its collision type tells
+//! A [`Definition`] has this as data, one file per assignment here. All else that depends on an assignment - suites,
+//! the catalogue of mistakes, formulas, probe scenes - is in a folder `assignments/<key>` of the room that has such a
+//! thing. Readers of traces, simulator and judge use the assignment of a scene, which follows from its collision type
 //! ([`Assignment::for_collisions`]). It knows nothing of scenes, states and files.
 
 mod collision_type;
@@ -44,10 +44,10 @@ fosssim_num::closed_set! {
 }
 
 impl Assignment {
-    /// The one that is meant where none is named.
+    /// The default assignment.
     pub const DEFAULT: Self = Self::T2M2;
 
-    /// Returns all of them: the default one, then the others in the order of the course.
+    /// Returns all assignments: the default one, then the others in the order of the course.
     #[must_use]
     pub fn default_first() -> [Self; Self::ALL.len()] {
         let mut all = Self::ALL;
@@ -55,7 +55,7 @@ impl Assignment {
         all
     }
 
-    /// Returns everything that it asks for.
+    /// Returns its definition.
     #[must_use]
     pub const fn definition(self) -> &'static Definition {
         match self {
@@ -98,18 +98,18 @@ pub struct Definition {
     pub key: &'static str,
     /// The assignment's name in the course.
     pub title: &'static str,
-    /// The collision types that it brings, and what a program does for each.
+    /// The collision types that it adds, and the handling of each.
     pub handlings: &'static [Handling],
     /// The kinds of pairs whose polynomials its detections log, in the order in which a pass looks at a particle's
-    /// pairs; [`PairKind::polynomials`] says how many each logs.
+    /// pairs; [`PairKind::polynomials`] is the number that each logs.
     pub pairs: &'static [PairKind],
     /// The coefficients that are dropped of polynomials.
     pub dropping: Dropping,
     /// The version that the original program shows above a run.
     pub version: &'static str,
-    /// How the original calls its verdict on collisions (oracle-behavior.md 6).
+    /// The original's name for its verdict on collisions (oracle-behavior.md 6).
     pub verdict: &'static str,
-    /// Whether the original says after each step how long it took, and writes into `residual.txt` whether collisions
+    /// Whether the original prints after each step how long it took, and writes into `residual.txt` whether collisions
     /// passed.
     pub tells_times: bool,
     /// The part of a scene that its starter library knows.
@@ -133,7 +133,7 @@ const COMMON: Definition = Definition {
 };
 
 impl Definition {
-    /// Returns how it handles a collision type; none where another assignment brings it.
+    /// Returns its handling of a collision type; `None` if another assignment adds the type.
     #[must_use]
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
@@ -142,7 +142,7 @@ impl Definition {
 
 /// The words of a scene that a starter library reads. Originals know more: those of Theme 1 are one program.
 ///
-/// It refuses a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
+/// It rejects a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
 #[derive(Debug, Clone, Copy)]
 pub struct Library {
     /// The library's integrators.
@@ -151,9 +151,9 @@ pub struct Library {
     pub forces: &'static [ForceKind],
     /// The collision types that scenes of the assignment may have.
     pub collisions: &'static [CollisionType],
-    /// Whether it refuses other collision types; else it ignores them, or does for them what no student writes.
+    /// Whether it rejects other collision types; else it ignores them, or does for them what no student writes.
     pub refuses_collisions: bool,
-    /// Whether scenes ask for the contest's detection. Its penalty force has no layer then: the thickness is 0.
+    /// Whether scenes select the contest's detection. Its penalty force has no layer then: the thickness is 0.
     pub contest: bool,
 }
 
@@ -179,7 +179,7 @@ pub struct Handling {
     pub collision: CollisionType,
     /// The lists in its records.
     pub records: RecordLists,
-    /// How the original calls it above a run (oracle-behavior.md 3).
+    /// The original's name for it above a run (oracle-behavior.md 3).
     pub heading: &'static str,
 }
 
@@ -205,15 +205,15 @@ pub enum ImpulseList {
 
 /// The coefficients that are dropped from a polynomial before its zeros are searched, and when a trace is read.
 ///
-/// Code that takes a rule for granted says so ([`drops_leading`](crate::drops_leading)).
+/// Code that depends on a rule is marked ([`drops_leading`](crate::drops_leading)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dropping {
     /// Leading coefficients with `|c| < 1e-12` (root-finder.md 15.1, the dropping build).
     Leading,
 }
 
-/// Says that the code beside it takes it for granted that small leading coefficients are dropped. A second rule makes
-/// the compiler name all these places.
+/// Marks code that depends on the rule that small leading coefficients are dropped. A second rule makes the compiler
+/// name all these places.
 #[macro_export]
 macro_rules! drops_leading {
     () => {

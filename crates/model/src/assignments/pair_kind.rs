@@ -1,4 +1,4 @@
-//! The kinds of pairs that detections look at (collisions.md 1).
+//! The kinds of pairs that detections check (collisions.md 1).
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
@@ -16,7 +16,7 @@ fosssim_num::closed_set! {
 }
 
 impl PairKind {
-    /// Returns how many polynomials a detection call of this kind logs: 2, 4, 2.
+    /// Returns the number of polynomials that a detection call of this kind logs: 2, 4, 2.
     #[must_use]
     pub const fn polynomials(self) -> usize {
         match self {
@@ -25,7 +25,7 @@ impl PairKind {
         }
     }
 
-    /// Returns how many coefficients each of them has before small leading ones are dropped; 0 where there is none.
+    /// Returns the number of coefficients of each before small leading ones are dropped; 0 without a polynomial.
     #[must_use]
     pub const fn coefficients(self) -> [usize; Self::MOST_POLYNOMIALS] {
         match self {

@@ -14,7 +14,7 @@ pub enum Part {
     Jacobians(ForceKind),
     /// The detection at the end of a step.
     SimpleDetection(PairKind),
-    /// The response to what is found there.
+    /// The response to the overlaps that are found.
     SimpleResponse(PairKind),
     /// The gradient of the penalty force.
     Penalty(PairKind),

@@ -1,8 +1,8 @@
-//! The errors that only the elements of a scene together can make (scene-format.md 6, collisions.md 7).
+//! The errors that only several elements of a scene together can have (scene-format.md 6, collisions.md 7).
 //!
-//! Coincidence is exact: two points are in one place when their coordinates compare equal, `-0` and `0` included, and
-//! a particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start
-//! is looked at; what happens later is the simulator's business.
+//! Coincidence is exact: two points are in one place when their coordinates compare equal, `-0` and `0` included, and a
+//! particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start is
+//! checked; the simulator finds what happens later.
 use super::document::Document;
 use super::model::{Collision, CollisionDetection, Edge, Force, HalfPlane, Particle};
 use super::problem::{Problem, Report};
@@ -15,8 +15,8 @@ use fosssim_num::vector::Vec2;
 /// gibibyte, and solving it takes minutes per step.
 pub const LARGEST_IMPLICIT: usize = 4096;
 
-/// At most this many pairs of a particle and an obstacle are looked at for coincidence, so that the time of a check
-/// does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
+/// The greatest number of pairs of a particle and an obstacle that are checked for coincidence, so that the time of a
+/// check does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
 const MOST_PAIRS: usize = 4_000_000;
 
 /// Judges the scene as a whole.
@@ -44,7 +44,7 @@ fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let (Some(duration), Some(integrator)) = (&parts.duration, &parts.integrator) else { return };
     let (Some(time), Some((_, time_step))) = (duration.value, integrator.value) else { return };
     if time < 0.0 || time_step <= 0.0 {
-        // Each has been complained about already.
+        // Each has been reported already.
         return;
     }
     let steps = (time / time_step).ceil();
@@ -133,7 +133,7 @@ fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// Returns whether two particles start in one place, as far as these could be read.
+/// Returns whether two particles start in one place, if their places could be read.
 fn in_one_place(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
     parts.place(first).zip(parts.place(second)).is_some_and(|(first, second)| first == second)
 }
@@ -169,7 +169,7 @@ fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// How bad it is when something starts exactly on something else.
+/// The severity of a body that starts exactly on another.
 struct ContactRule {
     /// Whether the penalty force acts: its direction is then not a number.
     penalty: bool,
@@ -223,7 +223,7 @@ fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, re
     for group in particles.chunk_by(|(_, _, a), (_, _, b)| a.position == b.position) {
         let movable = group.iter().position(|(_, _, particle)| !particle.fixed);
         let Some(movable) = movable.filter(|_| group.len() > 1) else { continue };
-        // Every other one is reported once; that two fixed ones are in one place hurts nobody.
+        // Every other pair is reported once; two fixed particles in one place do no harm.
         for (place, (number, tag, particle)) in group.iter().enumerate() {
             let partner = if particle.fixed { movable } else { 0 };
             let (other, _, with) = group[partner];

@@ -1,7 +1,7 @@
 //! The scene's elements with their places, and everything that is wrong with the XML itself.
 //!
 //! quick-xml cuts the text into tags; nesting and the names of elements are judged here, attributes in `tag`. Nothing
-//! is looked at twice, so that the work grows with the length of the text only.
+//! is read twice, so that the work grows with the length of the text only.
 use std::{collections::BTreeSet, ops::Range};
 
 use quick_xml::errors::{Error, SyntaxError};
@@ -177,8 +177,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    /// Warns where the original joins lines: a name with nothing but a line feed behind it becomes one with what
-    /// follows.
+    /// Warns where the original joins lines: a name that is followed by a line feed only is joined with the next word.
     fn report_glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
         let behind = inner[name.len()..].trim_start_matches('\n');
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
@@ -247,7 +246,7 @@ impl<'t> DocumentReader<'t, '_> {
             self.document.tags.push(tag);
             return;
         }
-        // Looking for what was meant is not free, so only what is shown is looked up.
+        // The search for a similar name is not free, so only shown problems get one.
         let meant = &mut self.document.meant;
         self.report.error(|| {
             let similar = grammar::similar_element(name);
@@ -261,7 +260,7 @@ impl<'t> DocumentReader<'t, '_> {
 
     fn end(&mut self, span: Range<usize>) {
         let name = self.text[span.start + 2..span.end - 1].trim_ascii_end();
-        // Not deeper than this, or a file of nothing but wrong closing tags would take for ever.
+        // The greatest depth; otherwise a file of wrong closing tags would take forever.
         const DEEPEST: usize = 64;
         let known = self.open.iter().rev().take(DEEPEST).position(|open| open.name == name);
         match (known, self.open.last()) {

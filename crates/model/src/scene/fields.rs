@@ -1,6 +1,6 @@
-//! Typed reading of an element's attributes, with a problem for whatever cannot be read.
+//! Typed reading of an element's attributes, with a problem for each value that cannot be read.
 //!
-//! Every method that returns nothing has reported why, or knows that somebody else has.
+//! A method that returns nothing has reported the reason, or knows that it was reported.
 use std::{borrow::Cow, ops::Range};
 
 use quick_xml::escape::{EscapeError, unescape};
@@ -12,10 +12,10 @@ use super::problem::{Problem, Report, Severity, quote};
 use super::tag::{Attribute, Tag, list};
 use fosssim_num::vector::Vec2;
 
-/// How many objects of a kind there are, for indices that point to them.
+/// The number of objects of a kind, for indices that point to them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Count {
-    /// The name of one of them: `particle`.
+    /// The name of such an object: `particle`.
     pub(super) what: &'static str,
     pub(super) count: usize,
     /// Whether the number is certain; after broken XML or a misspelt element it is not, and indices are not judged.
@@ -98,7 +98,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         if self.has(name) { self.text(name, "").map(Some) } else { Some(None) }
     }
 
-    /// Returns one of some names.
+    /// Returns a name from a list.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let attribute = self.required(name, &list(&names))?;

@@ -1,7 +1,6 @@
-//! The table of forces: how an element is called, which attributes it has, and what they become.
+//! The table of forces: the name of an element, its attributes, and their meaning.
 //!
-//! Both readers, the grammar, the writer and everybody who shows a force go by it. A force that has no row does not
-//! compile.
+//! Both readers, the grammar, the writer and every viewer of a force use it. A force without a row does not compile.
 use super::{element::Element, model::Force, rule::Rule};
 use crate::assignments::ForceKind;
 use fosssim_num::vector::Vec2;
@@ -14,7 +13,7 @@ pub(super) trait Source {
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
     /// Returns the index of a particle.
     fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// Returns a number with its default, if it has one, and the odd effect of one below zero.
+    /// Returns a number with its default, if it has one, and the odd effect of a negative one.
     fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, Self::Error>;
     /// Returns two numbers.
     fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {

@@ -1,11 +1,11 @@
-//! The names that a scene may use, and the one that somebody probably meant (scene-format.md 4, 5).
+//! The names that a scene may use, and the one that was probably meant (scene-format.md 4, 5).
 use super::{forces, rule::Rule};
 
 const fn element(name: &'static str, attributes: &'static [&'static str]) -> Rule {
     Rule { name, attributes }
 }
 
-/// Every element that may stand in a scene, but for those of forces.
+/// Every element that a scene may have, except those of forces.
 static OTHERS: [Rule; 19] = [
     element("simtype", &["type"]),
     element("duration", &["time"]),
@@ -24,7 +24,7 @@ static OTHERS: [Rule; 19] = [
     element("edgecolor", &["i", "r", "g", "b"]),
     element("halfplanecolor", &["i", "r", "g", "b"]),
     element("particlepath", &["i", "duration", "r", "g", "b"]),
-    // Only so that the stub's elements are refused in words of their own.
+    // Known only so that the stub's elements are rejected in words of their own.
     element("rigidbody", &["p", "r"]),
     element("rigidbodyvertex", &["x", "y", "m"]),
 ];
@@ -38,7 +38,7 @@ pub(super) fn rule(name: &str) -> Option<&'static Rule> {
     rules().find(|rule| rule.name == name)
 }
 
-/// Returns the known element that `name` looks like.
+/// Returns the known element whose name is similar to `name`.
 pub(super) fn similar_element(name: &str) -> Option<&'static str> {
     closest(name, rules().map(|rule| rule.name))
 }
@@ -55,8 +55,8 @@ const HABITS: [(&str, &str); 8] = [
     ("vortex", "vortexforce"),
 ];
 
-/// Returns the candidate that `word` was probably meant to be: the same but for case and punctuation, a customary other
-/// name, the beginning of it, or few slips away (a third of its letters, at most two).
+/// Returns the candidate that `word` probably means: the same except for case and punctuation, a customary other name,
+/// the beginning of it, or few slips away (a third of its letters, at most two).
 pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     const LONGEST: usize = 40;
     if word.len() > LONGEST {

@@ -15,7 +15,7 @@ pub struct UnknownFeature {
 /// The part of a scene that an assignment's programs do not know.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum UnknownPart {
-    /// An integrator: they refuse the scene.
+    /// An unknown integrator: programs reject the scene.
     Integrator(Integrator),
     /// A force: they ignore it.
     Force(ForceKind),
@@ -30,7 +30,7 @@ pub enum UnknownPart {
 }
 
 impl UnknownFeature {
-    /// Returns whether a program refuses the scene and writes no trace.
+    /// Returns whether a program rejects the scene and writes no trace.
     #[must_use]
     pub const fn is_refused(&self) -> bool {
         match self.part {
@@ -99,8 +99,8 @@ impl Scene {
         Assignment::ALL.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
     }
 
-    /// Returns the first assignment of the course whose programs can run it; where there is none, the one that brought
-    /// its collision handling.
+    /// Returns the first assignment of the course whose programs can run it; if there is none, the assignment that
+    /// added its collision handling.
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         match self.collision {

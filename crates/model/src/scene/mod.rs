@@ -3,9 +3,9 @@
 //! Knows nothing of the simulator and never touches the file system: it takes and gives text. The grammar is that of
 //! `scene-format.md`.
 //!
-//! [`read`] is for people: it reports everything that is wrong, with places and advice, and refuses what the original
+//! [`read`] is for people: it reports everything that is wrong, with places and advice, and rejects what the original
 //! would silently take for something else. [`original::read`] is for compatibility: it accepts exactly what the
-//! original accepts and refuses the rest in the original's words.
+//! original accepts and rejects the rest in the original's words.
 
 mod checks;
 mod document;

@@ -2,7 +2,7 @@
 use crate::assignments::{Assignment, CollisionType, Handling, Integrator};
 use fosssim_num::vector::Vec2;
 
-/// A scene: what is simulated, for how long, by which method, with which collision handling.
+/// A scene: the bodies, the duration, the integrator and the collision handling.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Simulated time in seconds.
@@ -22,7 +22,7 @@ pub struct Scene {
     /// Forces **in the order in which they act**: springs, simple gravity, gravitation, constant, drag, vortex; each
     /// kind in document order (simulation.md 2).
     pub forces: Vec<Force>,
-    /// The text shown in the banner, when the scene has one.
+    /// The text shown in the banner, if the scene has one.
     pub description: Option<String>,
     /// The values that only a display uses.
     pub display: Display,
@@ -61,7 +61,7 @@ pub enum Collision {
         stiffness: f64,
         /// `thickness`, length.
         thickness: f64,
-        /// How the pairs are found that repel each other.
+        /// The way to find the pairs that repel each other.
         detection: CollisionDetection,
     },
     /// Continuous-time detection, one pass.
@@ -95,10 +95,10 @@ impl Collision {
         }
     }
 
-    /// Returns the handling that its assignment asks of a program.
+    /// Returns the handling that its assignment requires of a program.
     ///
     /// # Panics
-    /// Never: a test holds every type to be handled by its assignment.
+    /// Never: a test checks that every type is handled by its assignment.
     #[must_use]
     pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();
@@ -106,11 +106,11 @@ impl Collision {
     }
 }
 
-/// How a penalty force finds its pairs (`collisiondetection`): by that the order in which it sums them differs
-/// (simulation.md 3). Other collision handling always looks at all pairs.
+/// The way in which a penalty force finds its pairs (`collisiondetection`), which determines the order of their sum
+/// (simulation.md 3). Other collision handling always checks all pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CollisionDetection {
-    /// `all-pairs`, and where a scene says nothing: in the order of a detection pass.
+    /// `all-pairs`, also the default: in the order of a detection pass.
     #[default]
     AllPairs,
     /// `contest`, in Theme 2, Milestone 3: in the order of a sweep along x.

@@ -1,7 +1,7 @@
 //! Numbers as the strict reader wants them: the whole text must be one.
 //!
-//! Where the original takes the longest prefix and ignores the rest (scene-format.md 2), this says what the original
-//! would have read. White space around a number is allowed.
+//! Where the original takes the longest prefix and ignores the rest (scene-format.md 2), messages name what the
+//! original would have read. White space around a number is allowed.
 
 /// A flaw of a number.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,7 +10,7 @@ pub(super) enum Flaw {
     Empty,
     /// No digits at the start.
     NoNumber,
-    /// A number, then something else; what the original would read.
+    /// A number, then something else; with the number that the original would read.
     Trailing(String),
     /// A decimal comma; the same with a point.
     Comma(String),
@@ -71,7 +71,7 @@ fn flaw(text: &str, length: usize) -> Flaw {
     }
 }
 
-/// Returns how many bytes at the start have the shape of a number; 0 when there are no digits.
+/// Returns the number of bytes at the start that have the shape of a number; 0 without digits.
 fn shape(text: &str) -> usize {
     let bytes = text.as_bytes();
     let Some(end) = mantissa(bytes) else { return 0 };
@@ -85,7 +85,7 @@ fn shape(text: &str) -> usize {
     end
 }
 
-/// Returns where a number's sign, digits and fraction end; `None` without digits.
+/// Returns the places at which a number's sign, digits and fraction end; `None` without digits.
 pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let whole = digits(text, sign);
@@ -94,7 +94,7 @@ pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
     (whole > 0 || fraction > 1).then_some(point + fraction)
 }
 
-/// Returns how many digits stand at `from`.
+/// Returns the number of digits at `from`.
 pub(super) fn digits(text: &[u8], from: usize) -> usize {
     text.get(from..).unwrap_or_default().iter().take_while(|byte| byte.is_ascii_digit()).count()
 }

@@ -1,13 +1,13 @@
-//! Problems of a scene: what is wrong, where, and what would be right.
+//! Problems of a scene: the fault, its place, and what would be right.
 use std::{fmt, ops::Range};
 
 /// At most this many errors, and as many warnings, are kept of one scene; the rest is only counted.
 pub const MOST_PROBLEMS: usize = 200;
 
-/// How bad a problem is.
+/// The severity of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
-    /// The scene is refused.
+    /// The scene is rejected.
     Error,
     /// The scene loads, but probably does not mean what its author thinks.
     Warning,
@@ -35,7 +35,7 @@ pub struct Problem {
 }
 
 impl fmt::Display for Problem {
-    /// Writes `line:column: message (help)`; a warning says so.
+    /// Writes `line:column: message (help)`; a warning is marked.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}:{}: ", self.line, self.column)?;
         if self.severity == Severity::Warning {
@@ -46,19 +46,19 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The reason why a scene was refused: its errors and warnings in the order of their places.
+/// The reason why a scene was rejected: its errors and warnings in the order of their places.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problems {
     /// The scene's name, as the caller gave it.
     pub source: String,
     /// The problems, at least one of them an error.
     pub list: Vec<Problem>,
-    /// How many more were found but not kept ([`MOST_PROBLEMS`]).
+    /// The number of further problems that were found but not kept ([`MOST_PROBLEMS`]).
     pub omitted: usize,
 }
 
 impl Problems {
-    /// Returns a refusal of the whole text, pointing to its start.
+    /// Returns a rejection of the whole text, pointing to its start.
     pub(super) fn whole(source: &str, message: String, help: &str) -> Self {
         Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).help(help)], omitted: 0 }
     }
@@ -110,7 +110,7 @@ impl Problem {
 #[derive(Debug, Default)]
 pub(super) struct Report {
     list: Vec<Problem>,
-    /// How many are kept of each severity.
+    /// The number of kept problems of each severity.
     kept: [usize; 2],
     omitted: usize,
 }
@@ -138,8 +138,7 @@ impl Report {
         self.kept[Severity::Error as usize] > 0
     }
 
-    /// Returns the problems in the order of their places, and how many more there were. `text` is what the spans refer
-    /// to.
+    /// Returns the problems in the order of their places, and the number of further ones. The spans refer to `text`.
     pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
         self.list.sort_by_key(|problem| (problem.span.start, problem.severity));
         let mut place = Place::at_start(text);

@@ -1,4 +1,4 @@
-//! The strict reader: a whole scene or all its problems at once.
+//! The strict reader: a whole scene or all its problems together.
 //!
 //! A scene that the original accepts silently and then simulates differently from what was written, or dies of, is an
 //! error here (scene-format.md 6). A scene without errors means the same to both readers; that is checked at the end,
@@ -17,11 +17,11 @@ pub const LARGEST_SCENE: usize = 8 << 20;
 pub struct LoadedScene {
     /// The scene; all indices are valid, all numbers finite.
     pub scene: Scene,
-    /// Oddities for its author to look at, in the order of the places.
+    /// Oddities for the author to review, in the order of the places.
     pub warnings: Vec<Problem>,
 }
 
-/// Reads a scene. `name` is what messages call it.
+/// Reads a scene. `name` is its name in messages.
 ///
 /// # Errors
 ///

@@ -107,7 +107,7 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem 
         AttrError::ExpectedQuote(at, _) => (at, "the closing quotation mark is missing after"),
         AttrError::Duplicated(at, _) => (at, "an attribute occurs twice after"),
     };
-    // The position lies behind the word that matters, white space and all.
+    // The position is behind the word that matters, with its white space.
     let before = inner.get(..at).unwrap_or(inner).trim_ascii_end();
     let word = before.rfind(|c: char| c.is_ascii_whitespace()).map_or(0, |space| space + 1);
     let bare = before.rfind(['"', '\'']).map_or(0, |quotation| quotation + 1);
@@ -127,7 +127,7 @@ pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
 }
 
-/// Returns where a part of the text starts.
+/// Returns the offset at which a part of the text starts.
 pub(super) fn offset(text: &str, part: &str) -> usize {
     (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize).min(text.len())
 }

@@ -9,8 +9,8 @@ use std::fmt;
 /// Writes a scene as XML, one element a line, every attribute spelt out, every number in the shortest form that reads
 /// back to the same bits.
 ///
-/// Reading gives an equal scene, provided that its forces stand in the order in which they act and that it is valid:
-/// a NaN or an infinity has no form in XML, and a NUL in a text is written as U+FFFD.
+/// Reading gives an equal scene, provided that its forces are in the order in which they act and that it is valid: a
+/// NaN or an infinity has no form in XML, and a NUL in a text is written as U+FFFD.
 #[must_use]
 pub fn write(scene: &Scene) -> String {
     let display = &scene.display;
@@ -66,7 +66,7 @@ fn integrator(scene: &Scene) -> Element {
     Element::new("integrator").with("type", scene.integrator.name()).number("dt", scene.time_step)
 }
 
-/// Returns the element of a collision handling; none where there is none.
+/// Returns the element of a collision handling; `None` without one.
 fn collision(collision: Collision) -> Option<Element> {
     let element = Element::new("collision").with("type", collision.kind().name());
     Some(match collision {
@@ -90,7 +90,7 @@ pub fn integrator_element(scene: &Scene) -> String {
     integrator(scene).to_string()
 }
 
-/// Returns the element of a scene's collision handling; empty where there is none.
+/// Returns the element of a scene's collision handling; empty if there is none.
 #[must_use]
 pub fn collision_element(handling: Collision) -> String {
     collision(handling).map_or_else(String::new, |element| element.to_string())

@@ -25,7 +25,7 @@ pub(super) struct SceneParts<'d, 't> {
     pub(super) display: Option<Display>,
 }
 
-/// A tag and what was read from it, unless it had problems.
+/// A tag and its values, unless it had problems.
 pub(super) struct Part<'d, 't, T> {
     pub(super) tag: &'d Tag<'t>,
     pub(super) value: Option<T>,
@@ -37,7 +37,7 @@ fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
 }
 
 impl SceneParts<'_, '_> {
-    /// Returns where a particle starts, if it could be read.
+    /// Returns the starting place of a particle, if it could be read.
     pub(super) fn place(&self, particle: usize) -> Option<Vec2> {
         Some(self.particles.get(particle)?.value.as_ref()?.position)
     }
@@ -160,7 +160,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         Count { what, count, certain: !self.document.broken && !self.document.meant.contains(name) }
     }
 
-    /// Returns whether the scene is one of the unfinished rigid-body stub; reports wrong types, too.
+    /// Returns whether the scene belongs to the unfinished rigid-body stub; reports wrong types, too.
     fn is_rigid(&mut self) -> bool {
         let types = [("particle-system", false), ("rigid-body", true)];
         let stub = "rigid bodies are an unfinished stub of the original and are not simulated";
@@ -355,7 +355,7 @@ fn pair(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<(usize, 
     Some((first?, second?))
 }
 
-/// Returns the particle in `j`, which is another one than that in `i`.
+/// Returns the particle in `j`, which differs from the one in `i`.
 fn other(fields: &mut TagFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
     let second = fields.index("j", particles)?;
     if first == Some(second) {

@@ -34,7 +34,7 @@ impl Bodies {
     /// Copies the scene's constants.
     ///
     /// # Panics
-    /// When an edge or a force names something that the scene does not have; the strict reader refuses such scenes.
+    /// When an edge or a force names something that the scene does not have; the strict reader rejects such scenes.
     pub fn new(scene: &Scene) -> Self {
         let particles = &scene.particles;
         for (index, edge) in scene.edges.iter().enumerate() {
@@ -60,13 +60,13 @@ impl Bodies {
         self.masses.len()
     }
 
-    /// Returns how many objects of each kind there are to make pairs of.
+    /// Returns the number of objects of each kind from which pairs are made.
     #[inline]
     pub fn objects(&self) -> Objects {
         Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
-    /// Returns the particles of a pair; the last one stands for those that it lacks.
+    /// Returns the particles of a pair; the last one replaces missing ones.
     pub fn particles_of(&self, pair: Pair) -> [usize; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {

@@ -1,4 +1,4 @@
-//! Where two bodies meet in the dense matrix of the implicit integrators.
+//! The places in the dense matrix of the implicit integrators at which two bodies meet.
 use nalgebra::{DMatrix, Matrix2};
 
 /// Adds a block for each of two particles, and subtracts it where the rows of one meet the columns of the other.

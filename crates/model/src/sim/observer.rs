@@ -1,10 +1,9 @@
-//! Observers hear of every detection call, pass, impulse and zone while the simulator computes. And how a step is
-//! steered.
+//! Observers receive every detection call, pass, impulse and zone while the simulator computes, and may steer a step.
 use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use serde::{Deserialize, Serialize};
 
-/// Hears what happens inside a step. Every method does nothing by default.
+/// Receives the events inside a step. Every method does nothing by default.
 ///
 /// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`, a
 /// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
@@ -12,58 +11,58 @@ use serde::{Deserialize, Serialize};
 /// the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part: `begin_pass`
 /// .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last `end_step`.
 ///
-/// An observer changes nothing. One that has the step go on with other values hands out a [`Steer`].
+/// An observer changes nothing. To continue the step with other values, it returns a [`Steer`].
 pub trait Observer {
-    /// Hears that a step begins; steps count from 1.
+    /// Receives the begin of a step; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
-    /// Hears that a detection pass begins.
+    /// Receives the begin of a detection pass.
     fn begin_pass(&mut self, _pass: Pass) {}
-    /// Returns where particles start and end (2N each) as the pass begins to see them, right after `begin_pass`.
+    /// Receives the starts and ends of particles (2N each) as the pass begins to see them, right after `begin_pass`.
     fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
-    /// Returns the wishes of this observer about the pass's pairs; asked once or more in each pass. Unless it wants
-    /// [`WantedPairs::Calls`], `detection` is not called, nobody steers calls, and pairs are computed many at a time.
+    /// Returns the wishes of this observer about the pass's pairs; called once or more in each pass. Unless it wants
+    /// [`WantedPairs::Calls`], `detection` is not called, calls are not steered, and pairs are computed many at a time.
     #[inline]
     fn wanted(&mut self) -> WantedPairs<'_> {
         WantedPairs::Calls
     }
-    /// Returns the one who steers the step, if anybody does.
+    /// Returns the steering part of this observer, if it has one.
     #[inline]
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         None
     }
-    /// Hears that a pair was tested.
+    /// Receives the test of a pair.
     fn detection(&mut self, _detection: &Detection<'_>) {}
-    /// Hears that a pair collides: right after its `detection`, which not everybody wants.
+    /// Receives a pair that collides: right after its `detection`, which not every observer wants.
     fn hit(&mut self, _pair: Pair) {}
-    /// Hears that the pass is over; `hits` pairs collide.
+    /// Receives the end of the pass, in which `hits` pairs collide.
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
-    /// Hears that a response was applied.
+    /// Receives a response that was applied.
     fn impulse(&mut self, _impulse: &Impulse) {}
-    /// Hears the synchronization point: the state that the mid record holds, before anybody puts another in its place.
+    /// Receives the synchronization point: the state of the mid record, before it may be replaced.
     fn synchronized(&mut self, _state: &State) {}
-    /// Hears the impact zones after the merge of geometric round `round` (0: before the first failsafe).
+    /// Receives the impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
-    /// Hears that the rigid failsafe is about to move this zone.
+    /// Receives a zone that the rigid failsafe is about to move.
     fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
-    /// Hears that the step is over, with this state.
+    /// Receives the end of the step, with this state.
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
 
-/// Steers a step: what it puts in place the step goes on with. Every method changes nothing by default.
+/// Steers a step: the step continues with the values that it sets. Every method changes nothing by default.
 pub trait Steer {
     /// Returns the polynomials of a pair, trimmed, are about to be searched for a time of impact. Others may be put in
     /// their place; search, decision and [`Observer::detection`] then go by those. Not called by `simple`, which has
     /// none.
     fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
-    /// Returns the system matrix of an implicit integrator, column by column, is about to be solved; as often in a step
-    /// as the method solves one. The step goes on with the entries that are left.
+    /// Receives the system matrix of an implicit integrator, column by column, before it is solved; once for each solve
+    /// of a step. The step continues with the entries that it leaves.
     fn system(&mut self, _matrix: &mut [f64]) {}
-    /// Returns the decision about a pair. The step goes on with the one that is returned.
+    /// Returns the decision about a pair, with which the step continues.
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
-    /// Returns the synchronization point, after [`Observer::synchronized`]. What is written here is what the step goes
-    /// on with; the geometric part of `hybrid` starts from the values that the answer names.
+    /// Receives the synchronization point, after [`Observer::synchronized`]. The step continues with the values that
+    /// are written here; the geometric part of `hybrid` starts from the values that the answer names.
     fn synchronize(&mut self, _state: &mut State) -> Resume {
         Resume::Own
     }
@@ -79,7 +78,7 @@ impl<S: Steer> Observer for Steering<S> {
     }
 }
 
-/// Tells an observer the state of the synchronization point, and has it steered.
+/// Passes the state of the synchronization point to an observer, and lets it steer.
 pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
     observer.synchronized(state);
     observer.steers().map_or(Resume::Own, |steer| steer.synchronize(state))
@@ -96,7 +95,7 @@ pub enum WantedPairs<'a> {
     Nothing,
 }
 
-/// The observer that hears nothing.
+/// The observer that ignores all events.
 impl Observer for () {
     #[inline]
     fn wanted(&mut self) -> WantedPairs<'_> {
@@ -104,7 +103,7 @@ impl Observer for () {
     }
 }
 
-/// Every event goes on to these observers, one after the other.
+/// Forwards every event to these observers, one after the other.
 macro_rules! go_on {
     ($self:ident => $($to:expr),+) => {
         fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
@@ -121,7 +120,7 @@ macro_rules! go_on {
     };
 }
 
-/// An observer that is lent hears the same.
+/// A borrowed observer receives the same.
 impl<O: Observer + ?Sized> Observer for &mut O {
     go_on!(self => (**self));
     #[inline]
@@ -134,10 +133,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
 }
 
-/// Two observers hear the same, the first one first.
+/// Two observers receive the same, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     go_on!(self => self.0, self.1);
-    /// Returns the wish of one of them, if the other one wants nothing.
+    /// Returns the wish of one observer, if the other wants nothing.
     fn wanted(&mut self) -> WantedPairs<'_> {
         if matches!(self.1.wanted(), WantedPairs::Nothing) {
             self.0.wanted()
@@ -152,8 +151,8 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// A state that the first one puts in place is seen by the second one. The geometric part starts from the synchronized
-/// state if one of them says so.
+/// The second observer sees a state that the first one sets. The geometric part starts from the synchronized state if
+/// one of them requests it.
 impl<A: Observer, B: Observer> Steer for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
@@ -185,13 +184,13 @@ pub enum Resume {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(from = "PassForm", into = "PassForm")]
 pub struct Pass {
-    /// Which part of the handling asks.
+    /// The part of the handling that makes the call.
     pub stage: Stage,
     /// Number of the pass within the step, from 0.
     pub index: u32,
 }
 
-/// The part of collision handling that a detection pass belongs to.
+/// The part of collision handling to which a detection pass belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// The only pass of `simple`.
@@ -203,7 +202,7 @@ pub enum Stage {
         /// The round.
         round: u32,
     },
-    /// A pass of the geometric part of `hybrid`: 0 is the one that builds the first zones.
+    /// A pass of the geometric part of `hybrid`: 0 builds the first zones.
     Geometric {
         /// The round.
         round: u32,
@@ -215,7 +214,7 @@ pub enum Stage {
 struct PassForm {
     /// Number of the pass within the step, from 0.
     index: u32,
-    /// The part of collision handling that asks.
+    /// The part of collision handling that makes the call.
     stage: StageName,
     /// Round within the stage, from 0.
     round: u32,
@@ -269,11 +268,11 @@ pub struct Detection<'a> {
     pub q_start: &'a [f64],
     /// Positions at the end of the step as this pass sees them, 2N.
     pub q_end: &'a [f64],
-    /// Velocities as this call sees them, 2N; empty where detection asks polynomials.
+    /// Velocities as this call sees them, 2N; empty if detection uses polynomials.
     pub velocities: &'a [f64],
 }
 
-/// How a detection call ended.
+/// The result of a detection call.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Decision {
     /// The objects collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the
@@ -298,7 +297,7 @@ impl Decision {
         matches!(self, Self::Hit { .. })
     }
 
-    /// Returns the time that was found; infinite where there is none, or none was looked for.
+    /// Returns the time that was found; infinite if there is none, or none was searched.
     #[must_use]
     pub const fn time(self) -> f64 {
         match self {
@@ -319,7 +318,7 @@ pub enum Time {
     None,
 }
 
-/// An applied response; in `simple` and `continuous-time` also what the trace logs.
+/// An applied response; in `simple` and `continuous-time` the trace logs it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Impulse {
     /// The pair.

@@ -1,9 +1,9 @@
-//! A pair of objects that detection looks at, and values for each kind of pair.
+//! A pair of objects that detection checks, and values for each kind of pair.
 pub use crate::assignments::PairKind;
 use serde::{Deserialize, Serialize};
 use std::ops::{Index, IndexMut};
 
-/// Two objects that detection looks at: a particle, and a particle, edge or half-plane.
+/// Two objects that detection checks: a particle, and a particle, edge or half-plane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Pair {
     /// The kind of the second object.

@@ -1,4 +1,4 @@
-//! The pairs that a detection pass looks at: their kinds, order and number, and whose a logged polynomial is
+//! The pairs that a detection pass checks: their kinds, order and number, and the owner of a logged polynomial
 //! (collisions.md 1, trace-format.md 2).
 //!
 //! This is the only enumeration of a pass: code that goes through the pairs of a particle, for the sake of values that
@@ -18,7 +18,7 @@ pub(super) struct Objects {
     pub half_planes: usize,
 }
 
-/// The pair that a pass looks at next.
+/// The next pair of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PassCursor {
     /// The particle.
@@ -30,13 +30,13 @@ pub(super) struct PassCursor {
 }
 
 impl PassCursor {
-    /// Returns the first pair in which this particle comes first.
+    /// Returns the first pair with this particle as its first object.
     #[inline]
     pub const fn at(first: usize) -> Self {
         Self { first, kind: PairKind::ALL[0], second: 0 }
     }
 
-    /// Returns the pair behind one.
+    /// Returns the pair after one.
     #[inline]
     pub const fn behind(kind: PairKind, first: usize, second: usize) -> Self {
         Self { first, kind, second: second + 1 }
@@ -44,8 +44,8 @@ impl PassCursor {
 }
 
 impl Objects {
-    /// Returns the numbers of what a particle meets: of particles the later ones, of edges all (but see [`is_end`]), of
-    /// half-planes all.
+    /// Returns the numbers of the objects that a particle meets: of particles the later ones, of edges all (but see
+    /// [`is_end`]), of half-planes all.
     #[inline]
     fn seconds(self, kind: PairKind, first: usize) -> Range<usize> {
         match kind {
@@ -99,7 +99,7 @@ impl Pairs {
         (0..self.particles).flat_map(|particle| self.pairs_of(particle))
     }
 
-    /// Returns the pairs in which this particle comes first.
+    /// Returns the pairs with this particle as their first object.
     pub fn pairs_of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
         PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::at(first))).flat_map(move |(kind, seconds)| {
             let is_pair = move |&second: &usize| match kind {
@@ -114,7 +114,7 @@ impl Pairs {
         Objects { particles: self.particles, edges: self.edges.len(), half_planes: self.half_planes }
     }
 
-    /// Returns how many pairs of each kind there are.
+    /// Returns the number of pairs of each kind.
     #[must_use]
     pub fn counts(&self) -> ByKind<usize> {
         let at_ends: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
@@ -125,20 +125,20 @@ impl Pairs {
         })
     }
 
-    /// Returns how many pairs there are.
+    /// Returns the number of pairs.
     #[must_use]
     pub fn count(&self) -> usize {
         self.counts().values().sum()
     }
 
-    /// Returns how many polynomials a pass logs, where passes log any.
+    /// Returns the number of polynomials that a pass logs, if passes log any.
     #[must_use]
     pub fn polynomials(&self) -> usize {
         self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
     }
 
     /// Returns the owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's
-    /// number among its own. None where a pass has no polynomial.
+    /// number among its own. None if a pass has no polynomial.
     #[must_use]
     pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
         let per_pass = self.polynomials();
@@ -171,7 +171,7 @@ mod tests {
         sim::{Detection, Observer, Pass, RootSearch, Simulation},
     };
 
-    /// Returns five discs, edges that share ends, half-planes; far apart, but for two discs that meet.
+    /// Returns five discs, edges that share ends, half-planes; far apart, except for two discs that meet.
     fn scene(collision: &str) -> Scene {
         let particle = |x: f64, y: f64, vx: f64| {
             format!("<particle m=\"1\" px=\"{x}\" py=\"{y}\" vx=\"{vx}\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>")
@@ -189,7 +189,7 @@ mod tests {
         original::read(xml.as_bytes()).expect("a scene").scene
     }
 
-    /// The pairs that each pass looked at.
+    /// The pairs that each pass checked.
     #[derive(Default)]
     struct Looked(Vec<Vec<(Pair, usize)>>);
 

@@ -10,8 +10,8 @@ use std::ops::Range;
 /// may be its bytes, for a caller that writes those of several steps at once.
 #[derive(Debug, Clone, Default)]
 pub struct PolynomialBytes {
-    /// Those from `begin` up to `used` are the list's; before them earlier ones may stand; what follows is room for
-    /// more.
+    /// The list's bytes are those from `begin` up to `used`; earlier lists may come before them, and room for more
+    /// follows.
     bytes: Vec<u8>,
     begin: usize,
     used: usize,
@@ -22,8 +22,8 @@ pub struct PolynomialBytes {
 /// Bytes of the largest polynomial that a detection logs.
 const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
-/// Small lists double; larger ones grow by this number of bytes at most: a hostile trace may make a step's list take
-/// hundreds of megabytes, but not twice as many.
+/// The most bytes by which larger lists grow; small lists double. A hostile trace may make a step's list take hundreds
+/// of megabytes, but not twice as many.
 const MOST_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {
@@ -38,7 +38,7 @@ impl PolynomialBytes {
         (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
     }
 
-    /// Returns where the list stands among [all](Self::all) that are there.
+    /// Returns the place of the list among [all](Self::all) bytes.
     pub(crate) fn range(&self) -> Range<usize> {
         self.begin..self.used
     }
@@ -71,8 +71,7 @@ impl PolynomialBytes {
         })
     }
 
-    /// Returns a bound of all moduli of coefficients; a NaN does not count. It may be that of a pair that is not
-    /// logged.
+    /// Returns a bound of all moduli of coefficients; a NaN does not count. It may come from a pair that is not logged.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.largest
@@ -116,7 +115,7 @@ impl PolynomialBytes {
         self.count += polynomials;
     }
 
-    /// Notes that a coefficient has this modulus, or that none has a larger one.
+    /// Notes that a coefficient has this modulus, or that none is larger.
     #[inline]
     pub(super) fn raise(&mut self, largest: f64) {
         self.largest = self.largest.max(largest);

@@ -1,7 +1,7 @@
 //! Root searches: whether they may be left out, and how many there were.
 use serde::Serialize;
 
-/// Whether a certificate may stand in for a root search.
+/// The use of certificates instead of root searches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RootSearch {
     /// Search only where no certificate excludes an impact. The traces are the same.
@@ -9,7 +9,7 @@ pub enum RootSearch {
     WhereNeeded,
     /// Always search.
     Always,
-    /// Search always, ask the certificate too, and count where they disagree.
+    /// Search always, compute the certificate too, and count disagreements.
     Audit,
 }
 
@@ -72,10 +72,10 @@ const SEARCH_WORK: u64 = 16;
 /// of some 150 cycles for an operation of 4; measured by `audit cost`).
 pub(crate) const SUBNORMAL_WORK: u64 = 32;
 
-/// The least modulus whose powers, and those of differences with it, stay normal up to the fifth.
+/// The least modulus whose powers, and powers of differences with it, stay normal up to the fifth.
 const SMALLEST_OF_NORMAL_POWERS: f64 = 1e-40;
 
-/// Returns whether products of some of these numbers may be subnormal.
+/// Returns whether products of these numbers may be subnormal.
 pub(crate) fn have_subnormal_products(numbers: &[f64]) -> bool {
     numbers.iter().any(|number| *number != 0.0 && number.abs() < SMALLEST_OF_NORMAL_POWERS)
 }

@@ -29,7 +29,7 @@ impl Simulation {
     /// Sets the scene up at its initial state.
     ///
     /// # Panics
-    /// When an edge names a particle that does not exist; the strict reader refuses such scenes.
+    /// When an edge names a particle that does not exist; the strict reader rejects such scenes.
     #[must_use]
     pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
         let state = State::for_scene(scene);
@@ -63,12 +63,12 @@ impl Simulation {
         self.forces.pairs()
     }
 
-    /// Declares that `steps` steps lie behind (for judging steps out of order).
+    /// Declares that `steps` steps are done (for judging steps out of order).
     pub fn set_steps_done(&mut self, steps: u32) {
         self.steps_done = steps;
     }
 
-    /// Advances the state by one time step and tells `observer` everything (simulation.md 1).
+    /// Advances the state by one time step and sends `observer` all events (simulation.md 1).
     ///
     /// # Errors
     /// [`StepError`], naming the step. The state is unspecified afterwards, and the step does not count as done.
@@ -76,7 +76,7 @@ impl Simulation {
     /// # Panics
     /// When the state has other lengths than 2N, or a force names something that the scene does not have.
     pub fn step(&mut self, mut observer: &mut dyn Observer) -> Result<(), StepError> {
-        // One copy of the step for all observers: what they are asked per pair and pass costs less than compiling more.
+        // One copy of the step for all observers: their calls per pair and pass cost less than compiling more copies.
         let observer = &mut observer;
         let step = self.steps_done + 1;
         observer.begin_step(step);
@@ -129,7 +129,7 @@ mod tests {
     };
     use fosssim_num::vector::Vec2;
 
-    /// Writes down what it hears; may replace the state at the synchronization point.
+    /// Logs the events that it receives; may replace the state at the synchronization point.
     #[derive(Default)]
     struct Log {
         lines: Vec<String>,
@@ -293,7 +293,8 @@ mod tests {
         );
     }
 
-    /// The step ends with the state that the observer writes at the synchronization point, but for the geometric part.
+    /// The step ends with the state that the observer writes at the synchronization point, except for the geometric
+    /// part.
     #[test]
     fn the_synchronised_state_counts_unless_zones_are_moved() {
         let replacement = State { positions: vec![7.0, 8.0], velocities: vec![9.0, 10.0] };

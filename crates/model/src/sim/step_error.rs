@@ -2,7 +2,7 @@
 use super::pair::Pair;
 use serde::{Deserialize, Serialize};
 
-/// The reason why a step has no result. The original hangs or goes on with garbage here.
+/// The reason why a step has no result. The original hangs or continues with garbage here.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum StepError {
     /// The root search of a pair would never end: its polynomials hold values that are not finite.

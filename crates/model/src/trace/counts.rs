@@ -5,9 +5,9 @@ use crate::{
 };
 use std::fmt;
 
-/// Numbers of events over all steps that it heard. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
+/// Numbers of events over all steps that it received. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
 ///
-/// It asks about no pair: a pass looks at every pair of the scene.
+/// It wants no single pairs: a pass checks every pair of the scene.
 ///
 /// ```
 /// use fosssim_model::{scene::original, sim::{RootSearch, Simulation}, trace::EventCounts};
@@ -28,7 +28,7 @@ use std::fmt;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EventCounts {
-    /// Steps that came to their end.
+    /// The number of steps that were completed.
     pub steps: u64,
     /// Passes of `simple`.
     pub simple_passes: u64,
@@ -61,7 +61,7 @@ pub struct EventCounts {
 }
 
 impl EventCounts {
-    /// Has heard nothing yet of a simulation of this scene.
+    /// Creates counts of zero for a simulation of this scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let pairs = pairs(scene);

@@ -35,7 +35,7 @@ fn integer(bytes: &[u8]) -> i32 {
     i32::from_le_bytes(bytes.try_into().expect("four bytes"))
 }
 
-/// Replaces `out` by the next `count` numbers; fewer when the source ends, a cut one is left in the source.
+/// Replaces `out` by the next `count` numbers; fewer if the source ends; a cut number is left in the source.
 pub(crate) fn numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
     out.clear();
     while out.len() < count {
@@ -71,7 +71,7 @@ pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut 
     whole
 }
 
-/// Returns the size of an ordinary polynomial (0 to 6, wholly in `bytes`), and what follows its size.
+/// Returns the size of an ordinary polynomial (0 to 6, wholly in `bytes`), and the bytes after its size.
 #[inline(always)]
 fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;

@@ -1,7 +1,8 @@
 //! Digests of traces and of their steps, as text that diffs well.
 //!
-//! The digest of a step is the beginning of the SHA-256 of its records' bytes, so a listing shows at which step two
-//! traces part. The digest of the trace is the SHA-256 of all its bytes, trailing ones included: what `sha256sum` says.
+//! The digest of a step is the beginning of the SHA-256 of its records' bytes, so a listing shows the step at which two
+//! traces begin to differ. The digest of the trace is the SHA-256 of all its bytes, including trailing ones, as
+//! `sha256sum` prints it.
 use super::{
     error::{Malformation, TraceError},
     frame::Frame,
@@ -80,7 +81,7 @@ pub struct Digests {
     /// Bytes behind the last of them.
     pub trailing: u64,
     /// Whether more bytes follow, which were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and
-    /// `trailing` count only what was read, and the digest says nothing about the trace.
+    /// `trailing` count only what was read, and the digest is not the trace's.
     pub unread: bool,
     /// The error that ended the reading before the scene's last record.
     pub stopped: Option<TraceError>,
@@ -88,7 +89,7 @@ pub struct Digests {
 
 impl Digests {
     /// Reads a whole trace, in the memory of one record and eight bytes per step. A malformed trace has digests, too:
-    /// those of its sound steps and that of all its bytes.
+    /// of its sound steps, and of all its bytes.
     pub fn from_stream(mut stream: impl Read, layout: Layout) -> Self {
         Self::walk(&mut stream, layout, &mut |_, _, _| {})
     }
@@ -121,7 +122,7 @@ impl Digests {
         let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
         let end = reader.offset();
         let Hashing { digest, bytes, .. } = all;
-        // The buffer may hold a few bytes more than were looked at; how many depends on the stream.
+        // The buffer may hold a few bytes more than were read; the number depends on the stream.
         let bytes = if unread { end } else { bytes };
         let (sha256, trailing, stopped) = (finish(digest), bytes - begin, stopped.or(failed));
         Self { steps, sha256, bytes, records, trailing, unread, stopped }

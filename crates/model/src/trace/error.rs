@@ -1,6 +1,6 @@
 //! Faults of a trace's bytes, and where they are.
 //!
-//! The strict [`Reader`](super::Reader) stops at them. [`Lenient`](super::Lenient) notes them, and goes on as the
+//! The strict [`Reader`](super::Reader) stops at them. [`Lenient`](super::Lenient) notes them, and continues as the
 //! original does.
 use super::layout::Layout;
 use serde::{Deserialize, Serialize};
@@ -12,7 +12,7 @@ use std::{borrow::Cow, fmt};
 pub struct TraceError {
     /// The record, from 0 (the initial one).
     pub frame: u64,
-    /// The step it belongs to, from 1; 0 for the initial record.
+    /// The step to which it belongs, from 1; 0 for the initial record.
     pub step: u32,
     /// Byte offset from the beginning of the trace: where the value begins that is wrong or not there.
     pub offset: u64,
@@ -175,10 +175,10 @@ pub enum Malformation {
         object: Cow<'static, str>,
         /// The index.
         index: i32,
-        /// How many of them there are.
+        /// The number of them.
         count: usize,
     },
-    /// A record that does not fit into the memory set aside for one.
+    /// A record that does not fit into the memory for one record.
     #[error(
         "the record needs more than {limit} bytes of memory, more than this program sets aside for one; the trace is \
          damaged or of another scene"
@@ -196,7 +196,7 @@ pub enum Malformation {
         /// The limit in bytes.
         limit: u64,
     },
-    /// A record that is as long as it should be, and longer than what is kept of one.
+    /// A record of the right length that is longer than its kept part.
     #[error(
         "the record has {logged} polynomials, as many as it should have, but this program compares the first {kept} of \
          a record of this scene only"

@@ -9,9 +9,9 @@ use std::{borrow::Cow, fmt};
 pub struct Frame {
     /// Positions and velocities.
     pub state: State,
-    /// The impulse list; empty where the layout has none.
+    /// The impulse list; empty if the layout has none.
     pub impulses: Vec<LoggedImpulse>,
-    /// The polynomial list; empty where the layout has none.
+    /// The polynomial list; empty if the layout has none.
     pub polynomials: PolynomialLog,
 }
 
@@ -58,7 +58,7 @@ pub struct ImpulsePair {
     second: i64,
 }
 
-/// A logged impulse in its serialized form, which is that of an [`Impulse`].
+/// A logged impulse in the serialized form of an [`Impulse`].
 #[derive(Serialize, Deserialize, schemars::JsonSchema)]
 struct ImpulseForm {
     /// The objects that collide.
@@ -111,7 +111,7 @@ impl LoggedImpulse {
         PairKind::from_code(self.kind)
     }
 
-    /// Returns the impulse's pair; none where it names nothing that could be one.
+    /// Returns the impulse's pair; `None` if it names no possible pair.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);

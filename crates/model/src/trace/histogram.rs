@@ -1,4 +1,4 @@
-//! How often each number of entries per step occurs.
+//! The number of steps for each number of entries.
 use std::{collections::BTreeMap, fmt};
 
 /// The greatest number of different values that are printed.
@@ -26,7 +26,7 @@ impl Histogram {
     }
 }
 
-/// `0 in 73 steps, 1 in 2 steps`; of many different values the first ones and the largest.
+/// Writes `0 in 73 steps, 1 in 2 steps`; of many different values the first ones and the largest.
 impl fmt::Display for Histogram {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let one = |entries, steps| format!("{entries} in {steps} step{}", if steps == 1 { "" } else { "s" });

@@ -1,12 +1,12 @@
-//! Which detection call logs which polynomial of a step.
+//! Finds the detection call that logs each polynomial of a step.
 //!
-//! A trace does not say it. The step is simulated again from the state before it, and the calls are counted.
+//! A trace does not contain it. The step is simulated again from the state before it, and the calls are counted.
 use crate::{
     scene::Scene,
     sim::{Detection, Observer, Pair, Pass, RootSearch, Simulation, State},
 };
 
-/// Where a polynomial of a step's end record comes from.
+/// The origin of a polynomial of a step's end record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Label {
     /// The detection pass.
@@ -58,7 +58,7 @@ mod tests {
         let scene = original::read(xml).unwrap().scene;
         let before = Simulation::new(&scene, RootSearch::WhereNeeded).state().clone();
         let labels = labels(&scene, &before);
-        // Three pairs of particles with two polynomials each, one particle beside the edge with four.
+        // Three pairs of particles with two polynomials each, one particle near the edge with four.
         assert_eq!(labels.len(), 10);
         let edge: Vec<_> = labels.iter().filter(|label| label.pair.kind == PairKind::ParticleEdge).collect();
         assert_eq!(edge.iter().map(|label| label.number).collect::<Vec<_>>(), [0, 1, 2, 3]);

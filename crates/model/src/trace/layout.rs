@@ -35,7 +35,7 @@ impl Layout {
         if self.polynomials { 2 } else { 1 }
     }
 
-    /// Records of a complete trace, the initial one included.
+    /// Returns the number of records of a complete trace, including the initial one.
     #[must_use]
     pub fn records(&self) -> u64 {
         1 + u64::from(self.records_per_step()) * u64::from(self.steps)
@@ -49,7 +49,7 @@ impl Layout {
         more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
     }
 
-    /// Returns the step that record `record` belongs to, from 1; 0 for the initial record.
+    /// Returns the step to which record `record` belongs, from 1; 0 for the initial record.
     #[must_use]
     pub fn step_of(&self, record: u64) -> u32 {
         u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)

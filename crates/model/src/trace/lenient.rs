@@ -1,8 +1,8 @@
-//! The original's reading, bit for bit (oracle-behavior.md 5): what it believes, what it passes over, where it stops.
+//! The original's reading, bit for bit (oracle-behavior.md 5): what it accepts, what it skips, where it stops.
 //!
-//! A stream that has run out stays failed; a value that is only partly there takes the bytes that are there as its
-//! low-order ones; polynomials are read without any check. The one thing not reproduced is how the original dies of
-//! nonsense counts: [`Unreadable::Memory`] is the answer instead.
+//! A stream that has run out stays failed; a value that is cut takes the existing bytes as its low-order ones;
+//! polynomials are read without any check. The one thing not reproduced is how the original dies of nonsense counts:
+//! [`Unreadable::Memory`] is the answer instead.
 //!
 //! Memory is bounded by what a record of the scene can hold ([`record_memory`]). Polynomials beyond that are counted
 //! and not kept: the reference never logs as many, so their number alone is the finding.
@@ -26,8 +26,8 @@ crate::drops_leading!();
 /// Memory that the lists of one record may take together at most, in bytes, whatever the scene.
 const LIMIT: usize = 256 * 1024 * 1024;
 
-/// Memory that they may take in any scene, in bytes. Lowered, impulse lists that are padded beyond reason are refused
-/// earlier than the original runs out of memory.
+/// Memory that they may take in any scene, in bytes. With a lower limit, impulse lists that are padded beyond reason
+/// are rejected before the original runs out of memory.
 const FLOOR: usize = 32 * 1024 * 1024;
 
 /// Memory of the longest polynomial that a detection logs, in bytes.
@@ -36,8 +36,8 @@ const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::
 /// The number of coefficients that are kept of a longer polynomial; any number above [`MAX_COEFFICIENTS`] is as wrong.
 const LONGEST_POLYNOMIAL: usize = 4096;
 
-/// Returns the memory that the lists of one record of this scene's traces may take, in bytes: what the polynomials of
-/// all detection passes take that a step can make (collisions.md 4 and 5), within bounds.
+/// Returns the memory that the lists of one record of this scene's traces may take, in bytes: the memory of the
+/// polynomials of all detection passes that a step can make (collisions.md 4 and 5), within bounds.
 #[must_use]
 pub fn record_memory(scene: &Scene) -> usize {
     let particles = scene.particles.len();
@@ -52,7 +52,7 @@ pub fn record_memory(scene: &Scene) -> usize {
 fn most_passes(scene: &Scene) -> usize {
     match scene.collision {
         // Two passes of the geometric part, and one more for each change of the zones: with every change a particle or
-        // the half-plane flag comes to a zone, or two zones become one.
+        // the half-plane flag is added to a zone, or two zones become one.
         Collision::Hybrid { max_iterations, .. } => {
             usize::try_from(max_iterations).unwrap_or(0).saturating_add(2 + 3 * scene.particles.len())
         }
@@ -60,8 +60,8 @@ fn most_passes(scene: &Scene) -> usize {
     }
 }
 
-/// The original stores as many impulses as the count says before it looks at the stream, and runs out of the corpus's
-/// 6 GiB of address space above this count (48 bytes each, in an array that doubles).
+/// The original stores as many impulses as the count claims before it reads the stream, and runs out of the corpus's 6
+/// GiB of address space above this count (48 bytes each, in an array that doubles).
 const STORABLE_IMPULSES: usize = 1 << 26;
 
 /// As many polynomials fit there (24 bytes each without their coefficients, in an array that doubles).
@@ -78,27 +78,27 @@ pub(super) const NOTES: usize = 16;
 pub struct LenientFrame {
     /// Positions and velocities.
     pub state: State,
-    /// The impulse list; empty where the layout has none.
+    /// The impulse list; empty if the layout has none.
     pub impulses: Vec<LoggedImpulse>,
-    /// The polynomial list **without its small leading coefficients** (|c| < 1e-12; a NaN is kept); empty where the
-    /// layout has none. Its beginning only where it is longer than the reader's limit allows.
+    /// The polynomial list **without its small leading coefficients** (|c| < 1e-12; a NaN is kept); empty if the layout
+    /// has none. Only its beginning, if it is longer than the reader's limit allows.
     pub polynomials: PolynomialLog,
     /// The number of polynomials in the list, those that are not kept included.
     pub logged: usize,
-    /// Whether the list is written in the trace exactly as `polynomials` says: nothing was trimmed, cut or negative.
+    /// Whether the trace has the list exactly as `polynomials` is: nothing was trimmed, cut or negative.
     pub plain: bool,
     /// The first damage that the original passes over in this record.
     pub note: Option<TraceError>,
 }
 
 impl LenientFrame {
-    /// Returns whether the polynomial list is longer than what was kept of it.
+    /// Returns whether the polynomial list is longer than its kept part.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.logged > self.polynomials.len()
     }
 
-    /// Gives back the memory of lists that are larger than nearly all lists are.
+    /// Frees the memory of lists that are larger than nearly all lists are.
     pub fn shrink(&mut self) {
         /// In bytes. Lowered, ordinary records are allocated again and again.
         const ORDINARY: usize = 4 << 20;
@@ -113,7 +113,7 @@ impl LenientFrame {
     }
 }
 
-/// The reason why the original goes no further.
+/// The reason why the original reads no further.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{at}")]
 pub struct ReadStop {
@@ -171,7 +171,7 @@ impl<R: Read> Lenient<R> {
         Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: LIMIT, strict: false }
     }
 
-    /// Lets the first damage end the reading.
+    /// Makes the first damage end the reading.
     pub(super) fn strict(mut self) -> Self {
         self.strict = true;
         self
@@ -219,13 +219,13 @@ impl<R: Read> Lenient<R> {
         self.begin
     }
 
-    /// Returns byte offset of what is read next.
+    /// Returns the byte offset of the next read.
     #[must_use]
     pub fn offset(&self) -> u64 {
         self.source.offset()
     }
 
-    /// Returns whether bytes follow; the original never looks at those behind the last record.
+    /// Returns whether bytes follow; the original never reads any behind the last record.
     pub fn has_more(&mut self) -> bool {
         self.source.ensure(1) > 0
     }
@@ -260,7 +260,7 @@ impl<R: Read> Lenient<R> {
         }
     }
 
-    /// Notes what the original passes over and the strict reader does not.
+    /// Notes damage that the original ignores and the strict reader reports.
     fn damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
         if self.strict {
             return Err(self.stop(Unreadable::State, offset, what));
@@ -269,7 +269,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Refuses, for the strict reader, a record whose polynomials take too much memory.
+    /// Rejects, for the strict reader, a record whose polynomials take too much memory.
     fn check_room(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
         if self.strict && self.is_full(frame) {
             let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
@@ -278,7 +278,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Reads into `value`: bytes that are missing leave the high-order ones as they are.
+    /// Reads into `value`: missing bytes leave the high-order ones as they are.
     fn bytes<const N: usize>(&mut self, value: &mut [u8; N]) {
         if !self.failed {
             let there = self.source.ensure(N).min(N);
@@ -296,7 +296,7 @@ impl<R: Read> Lenient<R> {
     }
 
     fn read_state(&mut self, state: &mut State) -> Result<(), ReadStop> {
-        // The original took the record before for a whole one, although the bytes ended in it.
+        // The original took the record before for complete, although the bytes ended in it.
         let whole = self.record - u64::from(self.failed && self.record > 0);
         self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
         if !self.failed {

@@ -13,7 +13,7 @@ pub(super) struct Log {
     impulses: Vec<u8>,
     /// Polynomials.
     pub(super) polynomials: PolynomialBytes,
-    /// Whether the responses of the current pass reach the trace: those of `hybrid` never do.
+    /// Whether the responses of the current pass are in the trace: those of `hybrid` never are.
     logs_impulses: bool,
 }
 
@@ -53,7 +53,7 @@ impl Log {
         self.impulses.len() / IMPULSE_BYTES
     }
 
-    /// Appends a record with these lists, but for its polynomials.
+    /// Appends a record with these lists, without its polynomials.
     pub(super) fn write_head(&self, out: &mut Vec<u8>, layout: Layout, state: &State) {
         encode::append_state(out, state);
         if layout.impulses {

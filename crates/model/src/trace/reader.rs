@@ -70,7 +70,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Lets the reader note impulses that name edges or half-planes which the scene does not have.
+    /// Makes the reader note impulses that name edges or half-planes which the scene does not have.
     #[must_use]
     pub fn with_scene(mut self, scene: &Scene) -> Self {
         self.objects = Some((scene.edges.len(), scene.half_planes.len()));
@@ -84,10 +84,10 @@ impl<R: Read> Reader<R> {
         self
     }
 
-    /// Replaces `frame` by the next record; false when the scene's last record lies behind.
+    /// Replaces `frame` by the next record; false behind the scene's last record.
     ///
     /// # Errors
-    /// [`TraceError`]; reading goes no further then, and every later call gives the same error.
+    /// [`TraceError`]; reading ends then, and every later call gives the same error.
     pub fn next(&mut self, frame: &mut Frame) -> Result<bool, TraceError> {
         if let Some(error) = &self.stopped {
             return Err(error.clone());
@@ -171,7 +171,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Notes the odd ones of the last record's impulses.
+    /// Notes the odd impulses of the last record.
     fn note_impulses(&mut self, impulses: &[LoggedImpulse]) {
         let (record, list) = (self.records() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
         let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {

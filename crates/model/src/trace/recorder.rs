@@ -30,7 +30,7 @@ impl<W: Write> Recorder<W> {
         Self { writer, layout, log }
     }
 
-    /// Returns the bytes and records written so far, those in the buffer included.
+    /// Returns the bytes and records written so far, including those in the buffer.
     #[must_use]
     pub fn written(&self) -> WrittenTrace {
         self.writer.written()
@@ -42,7 +42,7 @@ impl<W: Write> Recorder<W> {
         self.writer.failed()
     }
 
-    /// Writes what is left, flushes, and gives the stream back.
+    /// Writes the rest, flushes, and returns the stream.
     ///
     /// # Errors
     /// The first error that the stream reported, now or earlier.
@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(bytes[112..120], 2.0_f64.to_le_bytes());
     }
 
-    /// Long lists are not copied before they are written; the trace is the same as of short ones.
+    /// Tests that long lists, which are not copied before they are written, give the same trace as short ones.
     #[test]
     fn long_lists_stand_where_they_belong() {
         let polynomial = Polynomial::trimmed(&[1.0, 2.0, 3.0]);

@@ -1,12 +1,12 @@
-//! A stream with a buffer that can be looked at before it is consumed, and an absolute offset.
+//! A stream with a buffer that can be read before it is consumed, and an absolute offset.
 //!
 //! An error of the stream counts as its end and is kept, so that a reader treats it like missing bytes and can still
 //! name it.
 use super::error::Malformation;
 use std::io::{self, Read};
 
-/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show at once. A larger one makes no
-/// faster reading: its pages have to be made, and its bytes do not stay near the processor.
+/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show in one call. A larger one does not
+/// make reading faster: its pages have to be made, and its bytes do not stay near the processor.
 pub(crate) const WINDOW: usize = 64 * 1024;
 
 #[derive(Debug)]
@@ -38,13 +38,13 @@ impl<R: Read> Source<R> {
         self
     }
 
-    /// Starts keeping what is consumed, in `buffer`, whose old content is thrown away.
+    /// Starts keeping consumed bytes in `buffer`, whose old content is dropped.
     pub(crate) fn start_tape(&mut self, mut buffer: Vec<u8>) {
         buffer.clear();
         self.tape = Some(buffer);
     }
 
-    /// Stops keeping and gives what was consumed since the start; empty without a start.
+    /// Stops keeping and returns the bytes consumed since the start; empty without a start.
     pub(crate) fn stop_tape(&mut self) -> Vec<u8> {
         self.tape.take().unwrap_or_default()
     }

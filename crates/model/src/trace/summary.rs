@@ -114,7 +114,7 @@ pub struct StepView {
 
 impl Summary {
     /// Summarizes a trace of `scene`, in the memory of one record and eight bytes per step. A malformed trace has a
-    /// summary, too: it says where reading ended.
+    /// summary, too: it names the place where reading ended.
     pub fn for_scene(scene: &Scene, mut trace: impl Read) -> Self {
         let layout = Layout::for_scene(scene);
         let mut summary = Self {

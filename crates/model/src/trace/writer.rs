@@ -35,8 +35,7 @@ pub struct Writer<W: Write> {
     stream: W,
     layout: Layout,
     buffer: Vec<u8>,
-    /// Long lists that are not in the buffer: where they belong in it, and where they stand among the log's
-    /// polynomials.
+    /// Long lists that are not in the buffer: their places in it, and their places among the log's polynomials.
     lists: Vec<(usize, Range<usize>)>,
     /// The bytes of the lists.
     listed: usize,
@@ -103,7 +102,7 @@ impl<W: Write> Writer<W> {
         !self.lists.is_empty()
     }
 
-    /// Returns the bytes and records written so far, those in the buffer included.
+    /// Returns the bytes and records written so far, including those in the buffer.
     #[must_use]
     pub fn written(&self) -> WrittenTrace {
         WrittenTrace {
@@ -112,13 +111,13 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Returns whether writing has failed; what follows is thrown away then.
+    /// Returns whether writing has failed; later bytes are dropped then.
     #[must_use]
     pub fn failed(&self) -> bool {
         self.error.is_some()
     }
 
-    /// Writes what is left, flushes, and gives the stream back.
+    /// Writes the rest, flushes, and returns the stream.
     ///
     /// # Errors
     /// The first error that the stream reported, now or earlier.
@@ -131,7 +130,7 @@ impl<W: Write> Writer<W> {
         Ok((self.stream, self.written))
     }
 
-    /// Writes what is gathered; the log has these polynomials.
+    /// Writes the gathered records; the log has these polynomials.
     pub(super) fn hand_on(&mut self, polynomials: &[u8]) {
         let bytes = (self.buffer.len() + self.listed) as u64;
         if self.error.is_none() && bytes > 0 {

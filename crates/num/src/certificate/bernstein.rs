@@ -1,9 +1,9 @@
-//! Polynomials of degree three to five: when the root finder finds them nowhere positive in `[0, 1]`.
+//! Certificates for polynomials of degree three to five that the root finder finds nowhere positive in `[0, 1]`.
 //!
 //! On an interval a polynomial lies between the least and the greatest of its Bernstein coefficients (for instance
 //! Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012). All of them negative with
-//! margin, the zeros near (a bound after Fujiwara, 1916) and apart, has been enough for the root finder; see the header
-//! of [`super`] for what is only measured.
+//! margin, the zeros near (a bound after Fujiwara, 1916) and apart, has been enough for the root finder; the header of
+//! [`super`] says what is only measured.
 use super::{
     super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR},
     separated::zeros_are_separated,

@@ -78,9 +78,9 @@ fn misses(a: f64, b: f64, c: f64) -> bool {
 /// Returns whether it is below zero on `[0, 1]` with margin, and its zeros are near.
 ///
 /// The computed zeros are those of a parabola whose coefficients differ by a few u times the sum of the moduli, far
-/// less than the margin, so none lies in `[0, 1]`. They are of modulus at most r = 2^23, so a value is rounded by at
-/// most 8 u r^2 |a| = 2^-4 |a|, while the samples beyond the outermost zeros have a modulus of at least |a|, and
-/// the one between two zeros on either side of `[0, 1]` at least |a|/4.
+/// less than the margin, so none is in `[0, 1]`. They are of modulus at most r = 2^23, so a value is rounded by at most
+/// 8 u r^2 |a| = 2^-4 |a|, while the samples beyond the outermost zeros have a modulus of at least |a|, and the one
+/// between two zeros on either side of `[0, 1]` at least |a|/4.
 #[inline]
 fn negative(a: f64, b: f64, c: f64) -> bool {
     let size = a.abs() + b.abs() + c.abs();

@@ -1,8 +1,8 @@
-//! The certificate's closed forms for several polynomials at once: the questions of `closed_form`, in the same order of
-//! operations, about polynomials whose small leading coefficients are still there.
+//! The certificate's closed forms for several polynomials together: the questions of `closed_form`, in the same order
+//! of operations, about polynomials that still have their small leading coefficients.
 //!
-//! The answers are the same as those for each polynomial alone, where all numbers are finite; lanes in which a question
-//! does not arise compute values that nobody uses.
+//! The answers equal those for each polynomial alone if all numbers are finite. Lanes in which a question does not
+//! arise compute unused values.
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
@@ -11,14 +11,14 @@ use super::super::{
     },
 };
 
-/// Returns where a coefficient is so small that it is dropped when it leads.
+/// Returns the lanes in which a coefficient is so small that it is dropped when it leads.
 #[inline(always)]
 pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     coefficient.abs().below(LEADING_COEFFICIENT)
 }
 
-/// Returns where the polynomial `a t + b`, with small leading coefficients dropped, is certainly not positive within
-/// the step.
+/// Returns the lanes in which the polynomial `a t + b`, with small leading coefficients dropped, is certainly not
+/// positive within the step.
 #[inline(always)]
 pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (zero, small) = (a.like(0.0), is_small(a));
@@ -42,8 +42,8 @@ fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     !((before & nothing.lt(zero)) | (after & zero.le(one)))
 }
 
-/// Returns where the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly not positive
-/// within the step.
+/// Returns the lanes in which the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly
+/// not positive within the step.
 #[inline(always)]
 pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let small = is_small(a);
@@ -72,21 +72,22 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     c.below(0.0) & (misses | negative)
 }
 
-/// Returns where a value is at least `low` and less than `high`.
+/// Returns the lanes in which a value is at least `low` and less than `high`.
 #[inline(always)]
 fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
     value.at_least(low) & value.below(high)
 }
 
-/// Returns where an impact is excluded of a pair of particles, or with a half-plane: one of its polynomials, a parabola
-/// and a line, is certainly not positive within the step.
+/// Returns the lanes in which an impact is excluded for a pair of particles, or with a half-plane: one of its
+/// polynomials, a parabola and a line, is certainly not positive within the step.
 #[inline(always)]
 pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
     never_positive(a, b, c) | never_positive_line(d, e)
 }
 
-/// Returns where the closed forms exclude an impact of a pair with an edge: one of its polynomials is certainly not
-/// positive within the step, and the search among all of them would end, which `ends` says of the first and the last.
+/// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
+/// certainly not positive within the step, and the search among all of them would end, which `ends` states for the
+/// first and the last.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     ends: Mask<S>,
@@ -101,7 +102,7 @@ pub fn excludes_edge<S: Simd>(
     let [a0, a1, a2, a3, a4, a5] = approach;
     let mut excluded = never_positive(f0, f1, f2) | never_positive(s0, s1, s2);
     if !excluded.all() {
-        // Where the overlap has degree two at most, or the approach, the closed forms know of them, too.
+        // If the overlap has degree two at most, or the approach, the closed forms cover them, too.
         let is_parabola = is_small(o0) & is_small(o1);
         if is_parabola.any() {
             excluded = excluded | (is_parabola & never_positive(o2, o3, o4));
@@ -114,7 +115,7 @@ pub fn excludes_edge<S: Simd>(
     excluded & ends
 }
 
-/// Returns where all coefficients are of a size with which a search is known to end.
+/// Returns the lanes in which all coefficients are of a size with which a search is known to end.
 #[inline(always)]
 pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {
     let mut all = ends(coefficients[0]);

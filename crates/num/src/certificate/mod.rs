@@ -1,9 +1,9 @@
 //! Proofs that no root search is needed: certainly no impact within the step.
 //!
-//! A detection asks whether [`first_time`](super::first_time::first_time) is at most 1. Nearly always it is not, and
-//! a few multiplications show it. Because a search may be skipped only if its answer is known, the question is not
-//! where the polynomials *are* positive but where the original's root finder *says* so: it samples each gap between
-//! the zeros once, and rounding may decide a sample.
+//! A detection asks whether [`first_time`](super::first_time::first_time) is at most 1. Nearly always it is not, and a
+//! few multiplications show it. Because a search may be skipped only if its answer is known, the question is not where
+//! the polynomials *are* positive but where the original's root finder *finds* them so: it samples each gap between the
+//! zeros once, and rounding may decide a sample.
 //!
 //! One condition suffices: the answer exceeds 1 if the computed positive set of *one* polynomial has no interval with
 //! `hi > 0` and `lo <= 1`, and if no search hangs. Combining several polynomials would decide next to nothing more in
@@ -65,7 +65,7 @@ pub fn exclusion(polynomials: &[Polynomial]) -> Option<Level> {
     exclusion_of(polynomials.iter().map(Polynomial::coefficients))
 }
 
-/// Excludes as [`exclusion`] does, by lists of coefficients without small leading ones.
+/// Excludes an impact as [`exclusion`] does, by lists of coefficients without small leading ones.
 #[inline]
 pub fn exclusion_of<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
     let mut best = None;
@@ -80,7 +80,7 @@ pub fn exclusion_of<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Optio
     if searches { with_search(lists, best) } else { best }
 }
 
-/// Returns the levels for lists with a polynomial that needs a search; `known` is what the others have shown.
+/// Returns the levels for lists with a polynomial that needs a search; `known` is the result of the others.
 fn with_search<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option<Level>) -> Option<Level> {
     let mut searched = lists.filter(|list| list.len() > 3);
     if !searched.clone().all(search_ends) {

@@ -5,11 +5,11 @@
 //! relative change of the coefficients could make of it (to first order, carried along with each coefficient).
 use super::super::tolerances::DISCRIMINANT_MARGIN;
 
-/// The coefficients of a polynomial of lower degree or this one, and 0 behind the last.
+/// The coefficients of a polynomial of this degree or less, with 0 behind the last.
 #[derive(Clone, Copy)]
 struct Entries<const LENGTH: usize> {
     values: [f64; LENGTH],
-    /// How much each changes per relative change of the first polynomial's coefficients, at most.
+    /// The greatest change of each per relative change of the first polynomial's coefficients.
     changes: [f64; LENGTH],
 }
 
@@ -21,8 +21,8 @@ impl<const LENGTH: usize> Entries<LENGTH> {
     }
 
     /// Makes one step of the division: subtracts the multiple of the divisor at which the leading coefficient vanishes,
-    /// and moves up by one place. All places are computed, since those behind the last ones stay 0 and what has no
-    /// branches is done for several at once.
+    /// and moves up by one place. All places are computed, because places behind the last ones stay 0 and code without
+    /// branches works on several together.
     #[inline(always)]
     fn subtract(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;

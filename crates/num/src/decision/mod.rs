@@ -2,8 +2,8 @@
 //!
 //! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16): they need not be
 //! positive in one open interval, it is enough that the *closures* of the sets where each is positive meet in `(0, 1]`.
-//! Each coefficient is known up to an error; [`decide`] says whether the answer is the same for all choices of
-//! coefficients, and proves it. It never asks what the original's root finder would have said (that is
+//! Each coefficient is known up to an error; [`decide`] finds whether the answer is the same for all choices of
+//! coefficients, and proves it. It does not depend on the result of the original's root finder (that is
 //! [`first_time`](super::first_time), and [`certificate`](super::certificate) for skipping it).
 //!
 //! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients, so among all choices the
@@ -15,10 +15,10 @@
 //! * **Borderline** otherwise: some choices hit, others do not. (Also where a proof would take too long; see
 //!   [`decide`].)
 //!
-//! So two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients,
-//! `pieces` by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*,
-//! section 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left
-//! goes to integer arithmetic ([`exact`]), which always decides.
+//! Two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients, `pieces`
+//! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section
+//! 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left goes to
+//! integer arithmetic ([`exact`]), which always decides.
 //!
 //! The rules (and where they differ from the original): zeros at which a polynomial only touches zero from above do
 //! not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of
@@ -43,15 +43,16 @@ use pieces::{Answer, Search};
 use range::{Ends, Problem};
 pub use short::all_exact;
 
-/// Most polynomials that one detection asks about.
+/// The greatest number of polynomials of one detection.
 pub const MAX_POLYNOMIALS: usize = 4;
 
 /// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about
 /// 1.
 pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
 
-/// Over how many powers of two coefficients may spread for [`decide`] to use integers although there are errors: enough
-/// for the fifth powers of displacements of `1e-20` beside distances of 1. Greater makes hostile input slower.
+/// The powers of two over which coefficients may spread for [`decide`] to use integers although there are errors:
+/// enough for the fifth powers of displacements of `1e-20` next to distances of 1. A greater number makes hostile input
+/// slower.
 const MOST_SPREAD: u64 = 400;
 
 /// Whether the detection hits within the step.
@@ -91,7 +92,7 @@ pub struct CertifiedDecision {
     /// if a coefficient is not finite. `None` for `No`.
     pub time: Option<[f64; 2]>,
     /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least
-    /// the `units` that were asked for and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
+    /// the given `units` and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
     pub margin: f64,
     /// Which level was needed.
     pub level: Level,

@@ -1,11 +1,11 @@
 //! Subdivision of `[0, 1]`: L2 of [`super::decide`].
 //!
 //! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between
-//! the least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows by
-//! what every halving adds. A piece is closed when one polynomial is negative throughout; a time at which all are
-//! positive ends the search. Halving stops where the coefficients are no more than their own rounding: such pieces stay
-//! open. Where one polynomial is left and its coefficients change their sign once, it has exactly one zero there, which
-//! bisection by values brackets faster.
+//! the least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows
+//! with every halving. A piece is closed when one polynomial is negative throughout; a time at which all are positive
+//! ends the search. Halving stops if the coefficients are no more than their own rounding: such pieces stay open. Where
+//! one polynomial is left and its coefficients change their sign once, it has exactly one zero there, which bisection
+//! by values brackets faster.
 use super::{
     MAX_POLYNOMIALS, UNIT_ROUNDOFF,
     range::{Control, Problem, slack},
@@ -20,7 +20,7 @@ const NARROWEST: f64 = 1.0 / (1_u64 << 50) as f64;
 /// After this many pieces all others stay open. Ordinary searches need some hundred.
 const MOST_PIECES: u32 = 5_000;
 
-/// Coefficients below this many times their rounding are noise: halving shows no more.
+/// The multiple of its rounding below which a coefficient is noise: halving shows no more.
 const NOISE: f64 = 2.0;
 
 /// The result of a search.
@@ -158,7 +158,7 @@ impl PieceWalk<'_> {
         loop {
             let middle = lo + (hi - lo) * 0.5;
             let (value, error) = polynomial.value_at(middle);
-            // The middle of neighbors is one of them, and ends the loop, too.
+            // The middle of neighbors equals one of them, and ends the loop, too.
             if value > error && middle < hi {
                 hi = middle;
             } else if value < -error && middle > lo {
@@ -183,11 +183,11 @@ fn rises_once(control: &Control) -> bool {
 
 /// The sign of a piece, as its Bernstein coefficients show it.
 enum Sign {
-    /// All are negative, by this much at least.
+    /// All coefficients are negative, by at least this much.
     Negative(f64),
-    /// All are positive.
+    /// All coefficients are positive.
     Positive,
-    /// None is clearly more than rounding.
+    /// No coefficient is clearly more than rounding.
     Noise,
     /// Anything else; halving helps.
     Mixed,
@@ -213,7 +213,7 @@ impl Sign {
     }
 }
 
-/// Returns the Bernstein coefficients of the two halves (de Casteljau). A sum is rounded, halving is exact but for
+/// Returns the Bernstein coefficients of the two halves (de Casteljau). A sum is rounded, halving is exact except for
 /// underflow, which the error already covers; all intermediate values are convex combinations of the first ones.
 fn halves(control: &Control) -> (Control, Control) {
     let (mut left, mut right) = (*control, *control);

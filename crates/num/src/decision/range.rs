@@ -1,9 +1,9 @@
 //! The two extreme choices of a detection's coefficients, and the decisions that their signs and Bernstein coefficients
 //! exclude.
 //!
-//! Levels L0 and L1 of [`super::decide`]: they look at one polynomial at a time. Every comparison allows for the
-//! rounding of the computation itself, so what it says is proved (rounding as in Higham, *Accuracy and Stability of
-//! Numerical Algorithms*, section 3.1).
+//! Levels L0 and L1 of [`super::decide`]: they check one polynomial at a time. Every comparison allows for the rounding
+//! of the computation itself, so its result is proved (rounding as in Higham, *Accuracy and Stability of Numerical
+//! Algorithms*, section 3.1).
 use super::{BoundedValue, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
 
 /// Which end of every coefficient's interval.
@@ -140,9 +140,9 @@ impl Problem {
         self.polynomials().iter().map(spread).max().unwrap_or(0)
     }
 
-    /// Returns how many further units of the bounds a hit survives: at the best of some times from this one on, the
-    /// least of the polynomials' values over their bounds. At least 0. The times are spread evenly over the rest of the
-    /// step, and ever closer after the first, because a hit may be short.
+    /// Returns the number of further units of the bounds that a hit survives: at the best of some times from this one
+    /// on, the least of the polynomials' values over their bounds. At least 0. The times are spread evenly over the
+    /// rest of the step, and ever closer after the first, because a hit may be short.
     pub(crate) fn slack_of_yes(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
@@ -159,7 +159,7 @@ impl Problem {
     }
 }
 
-/// Returns one end of the interval in which a coefficient lies, rounded outwards.
+/// Returns one end of the interval that contains a coefficient, rounded outwards.
 #[inline]
 fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
     if units == 0.0 || coefficient.bound == 0.0 {
@@ -175,7 +175,7 @@ fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
     }
 }
 
-/// Returns how many units of a bound a distance from zero is worth.
+/// Returns the worth of a distance from zero, in units of a bound.
 #[inline]
 pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
     // A hundredth less covers the rounding of the bound and of the quotient.
@@ -201,7 +201,7 @@ impl ExactPolynomial {
     /// Tries level L1: all Bernstein coefficients are negative.
     #[inline]
     fn bernstein(&self) -> Option<f64> {
-        // Positive at 0: no need to look.
+        // Positive at 0: no search is needed.
         if self.coefficients[0] > 0.0 {
             return None;
         }
@@ -228,7 +228,7 @@ impl ExactPolynomial {
     }
 
     /// Returns the Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1:
-    /// scaling is exact but for underflow.
+    /// scaling is exact except for underflow.
     pub(crate) fn control_until(&self, end: f64) -> Control {
         let (mut stretched, mut power) = (*self, 1.0);
         for value in &mut stretched.coefficients {
@@ -254,7 +254,7 @@ impl ExactPolynomial {
         values
     }
 
-    /// Returns how many units of the bound the value at `t` in `[0, 1]` lies above zero, at least 0.
+    /// Returns by how many units of the bound the value at `t` in `[0, 1]` exceeds zero, at least 0.
     fn slack_at(&self, t: f64) -> f64 {
         let (value, error) = self.value_at(t);
         if value > error { slack(value - error, self.bound) } else { 0.0 }

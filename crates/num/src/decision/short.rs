@@ -40,7 +40,7 @@ mod tests {
         assert!(all_exact(&[0.0, -0.0], 0));
         assert!(all_exact(&[0.5, -3.0, 0.0, 7.25], 5));
         assert!(!all_exact(&[0.5, -3.0, 0.0, 7.25], 4));
-        // Each is short, but not with the other.
+        // Each product is short, but not with the other.
         assert!(!all_exact(&[1e9, 0.0625], 30));
         assert!(all_exact(&[f64::MAX, f64::MIN], 53));
         assert!(!all_exact(&[f64::MAX, 5e-324], 2000));

@@ -5,7 +5,7 @@ use super::{fused, tables::POWERS};
 const PARTS: f64 = f64::from_bits(0x4067_1547_652b_82fe);
 /// -ln 2 / 128 in two pieces; a product of the first with a small whole number is exact.
 const MINUS_PART: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_bits(0xbd0c_f79a_bc9e_3b3a)];
-/// Adding this to a number rounds it to a whole one, which stands in the lowest bits of the sum.
+/// Adding this to a number rounds it to a whole one, which is in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The coefficients of `e^r - 1 - r` from `r^2` on.
 const SERIES: [f64; 4] = [
@@ -14,7 +14,7 @@ const SERIES: [f64; 4] = [
     f64::from_bits(0x3fa5_5555_cf17_2b91),
     f64::from_bits(0x3f81_1111_67a4_d017),
 ];
-/// The exponents, as they stand in a number's bits, of 2^-54, 512 and 1024.
+/// The exponents of 2^-54, 512 and 1024 in a number's bits.
 const TINY: u64 = 0x3c9;
 const LARGE: u64 = 0x408;
 const TOO_LARGE: u64 = 0x409;

@@ -27,7 +27,7 @@ const SERIES_AT_ONE: [f64; 11] = [
 ];
 /// The bits of 0.6875, where the table begins.
 const FIRST: u64 = 0x3fe6_0000_0000_0000;
-/// The bits of `1 - 2^-4`, and how many numbers from there on are close to one.
+/// The bits of `1 - 2^-4`, and the number of numbers from there on that are close to one.
 const AT_ONE: u64 = 0x3fee_0000_0000_0000;
 const NUMBERS_AT_ONE: u64 = 0x0003_0900_0000_0000;
 /// 2^27: half of a number's bits.

@@ -5,7 +5,7 @@
 //! rounded, so another implementation changes the last bit of a few results in a thousand. These have that library's
 //! bits, whatever the target and its processor: its algorithms, its tables, and a fused operation wherever its machine
 //! code has one. NaN's sign and payload are not specified. No other place of the crate may call the standard library's
-//! methods; `clippy.toml` sees to that.
+//! methods; `clippy.toml` enforces that.
 #![expect(clippy::disallowed_methods, reason = "the bits are those of fused operations")]
 
 mod exponential;

@@ -15,7 +15,7 @@ pub(super) struct ReducedAngle {
 pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
 /// 2/π.
 const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
-/// Adding this to a number rounds it to a whole one, which stands in the lowest bits of the sum.
+/// Adding this to a number rounds it to a whole one, which is in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The constant for multiples of four.
 const ROUNDS_TO_TURNS: f64 = f64::from_bits(0x4358_0000_0000_0000);
@@ -79,7 +79,7 @@ pub(super) fn far(x: f64) -> ReducedAngle {
     ReducedAngle { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
 }
 
-/// Quarters of a turn: whole ones (less whole turns), a part of one, and what that is more than its nearest number.
+/// Quarters of a turn: whole ones (less whole turns), a part of one, and the rest that its nearest number lacks.
 struct Quarters {
     whole: f64,
     part: f64,

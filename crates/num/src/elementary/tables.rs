@@ -1,6 +1,6 @@
 //! The tables of the elementary functions: figures of the GNU C library since 2.28, as bits.
 //!
-//! Those of `e^x`, of the angles and of `2/π` follow from mathematics, but for the last bit of 17 small parts.
+//! Those of `e^x`, of the angles and of `2/π` follow from mathematics, except for the last bit of 17 small parts.
 #![cfg_attr(rustfmt, rustfmt::skip)]
 
 /// For `i` from 0 to 127: what `2^(i/128)` is more than its nearest number, in parts of it, and the bits of that number
@@ -117,7 +117,7 @@ pub(super) const LOGARITHMS: [u64; 256] = [
     0x3fd432eee32fe000,
 ];
 
-/// For `i` from 0 to 109: the sine and the cosine of `i/128`, each with what it is more than its nearest number.
+/// For `i` from 0 to 109: the sine and the cosine of `i/128`, each with the rest that its nearest number lacks.
 pub(super) const ANGLES: [u64; 440] = [
     0x0000000000000000, 0x0000000000000000, 0x3ff0000000000000, 0x0000000000000000,
     0x3f7fffeaaaaeeeef, 0xbc1e45e2ec67b77c, 0x3fefffc000155552, 0x3c8f4a01a0196dae,

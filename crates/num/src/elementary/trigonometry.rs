@@ -12,7 +12,7 @@ const COSINE_IS_ONE: u32 = 0x3e40_0000;
 const TABLE_ENDS: u32 = 0x3feb_6000;
 const QUARTER_ENDS: u32 = 0x4003_68fd;
 const NEAR_ENDS: u32 = 0x4199_21fb;
-/// Adding this to an angle rounds it to 1/128; the number of the step stands in the lowest bits of the sum.
+/// Adding this to an angle rounds it to 1/128; the number of the step is in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x42c8_0000_0000_0000);
 /// Below this angle Taylor's series does without the table.
 const TAYLOR_ENDS: f64 = f64::from_bits(0x3fc0_20c4_9ba5_e354);
@@ -24,11 +24,11 @@ const TAYLOR: [f64; 5] = [
     f64::from_bits(0x3ec7_1de2_7b9a_7ed9),
     f64::from_bits(0xbe5a_ddff_c2fc_df59),
 ];
-/// The sine's terms in `x^3` and `x^5` between two angles of the table, and those of one less the cosine.
+/// The sine's terms in `x^3` and `x^5` between two angles of the table, and the terms of one less the cosine.
 const SINE: [f64; 2] = [f64::from_bits(0xbfc5_5555_5555_5515), f64::from_bits(0x3f81_1110_e829_872f)];
 const COSINE: [f64; 3] = [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
 
-/// Returns the sine of an angle in radians; NaN of an infinite one.
+/// Returns the sine of an angle in radians; NaN for infinity.
 #[must_use]
 pub fn sin(angle: f64) -> f64 {
     match high_word(angle) {
@@ -39,7 +39,7 @@ pub fn sin(angle: f64) -> f64 {
     }
 }
 
-/// Returns the cosine of an angle in radians; NaN of an infinite one.
+/// Returns the cosine of an angle in radians; NaN for infinity.
 #[must_use]
 pub fn cos(angle: f64) -> f64 {
     match high_word(angle) {
@@ -81,7 +81,7 @@ fn looked_up(modulus: f64) -> ([f64; 4], f64) {
     (std::array::from_fn(|i| f64::from_bits(ANGLES[row + i])), modulus - (sum - ROUNDS))
 }
 
-/// Returns the sine of `x + dx` for `|x|` up to 0.86 and a `dx` that is small beside it.
+/// Returns the sine of `x + dx` for `|x|` up to 0.86 and a `dx` that is small compared with it.
 fn sine(x: f64, dx: f64) -> f64 {
     if x.abs() < TAYLOR_ENDS {
         let square = x * x;

@@ -44,8 +44,8 @@ impl Convergence {
     }
 }
 
-/// Iterates with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit`
-/// steps at most. All steps, those of the iterations among them, are added to `steps`.
+/// Iterates with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit` steps
+/// at most. All steps, including those of the iterations, are added to `steps`.
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
     mut k: Coefficients,
@@ -93,7 +93,7 @@ struct Attempt<'a> {
     by_zero: Measure,
 }
 
-/// The place where the chain of iterations stands.
+/// The place in the chain of iterations.
 enum Stage {
     Quadratic,
     Linear,

@@ -7,11 +7,11 @@ use super::{
 /// Passes without success after which the iteration fails.
 const MAX_STEPS: usize = 10;
 
-/// How a linear iteration ended.
+/// The end of a linear iteration.
 pub(super) enum Outcome {
     /// A zero, and the quotient.
     Zero(f64, Coefficients),
-    /// The iteration stands still near this point: two zeros may be close together.
+    /// The iteration rests near this point: two zeros may be close together.
     Cluster(f64),
     /// No convergence.
     Failed,

@@ -87,9 +87,9 @@ enum SearchResult {
 
 /// Returns all zeros of the polynomial with these coefficients, highest power first (root-finder.md 3).
 ///
-/// The result depends on nothing but the coefficients. A leading zero and `c z^m` are rejected; when all twenty
-/// shifts fail, the zeros found before that are returned. Degrees 1 and 2 use closed forms and accept coefficients
-/// that are not finite; the zeros are then whatever infinities and NaN the formulas give.
+/// The result depends only on the coefficients. A leading zero and `c z^m` are rejected; when all twenty shifts fail,
+/// the zeros found before that are returned. Degrees 1 and 2 use closed forms and accept coefficients that are not
+/// finite; the zeros are then whatever infinities and NaN the formulas give.
 ///
 /// # Errors
 /// [`DoesNotTerminate`] for inputs with which the original hangs.

@@ -23,7 +23,7 @@ pub(super) fn scale<const N: usize>(polynomial: &mut Coefficients) {
     if (factor > 1.0 && LARGE / factor < largest) || (factor <= 1.0 && largest < 10.0) {
         return;
     }
-    // Truncated toward zero, also when negative; it lies between -201 and 1000, so the power is a normal number.
+    // Truncated toward zero, also when negative; it is between -201 and 1000, so the power is a normal number.
     #[expect(clippy::cast_possible_truncation, reason = "truncation is what the original does")]
     let exponent = (ln(factor) / std::f64::consts::LN_2 + 0.5) as i64;
     if exponent != 0 {

@@ -25,10 +25,10 @@ pub struct Gif<'a> {
 }
 
 impl<'a> Gif<'a> {
-    /// Begins a film, played for ever, in these colors, the background first.
+    /// Begins a film, which repeats forever, in these colors, the background first.
     ///
     /// # Errors
-    /// When `out` can't be written, or the pictures are larger than a GIF can say.
+    /// When `out` can't be written, or the pictures are larger than a GIF allows.
     pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colors: &[Rgb]) -> io::Result<Self> {
         let palette = palette(colors);
         let bytes: Vec<u8> = palette.iter().flat_map(|color| color.0).collect();

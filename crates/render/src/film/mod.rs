@@ -5,7 +5,7 @@ mod png;
 
 pub use self::{gif::Gif, png::write_png};
 
-/// How fast pictures follow each other, in pictures per second.
+/// The rate of pictures, in pictures per second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rate(u16);
 

@@ -25,9 +25,10 @@ pub struct PlottedPolynomial<'a> {
 pub struct PolynomialPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// The polynomials; four styles tell them apart.
+    /// The polynomials; four styles distinguish them.
     pub curves: &'a [PlottedPolynomial<'a>],
-    /// Where all are positive; `None` where that is not asked, as for an expected and an actual polynomial.
+    /// The intervals in which all are positive; `None` if they are not wanted, as for an expected and an actual
+    /// polynomial.
     pub common: Option<&'a [Interval]>,
     /// The time of impact.
     pub impact: Option<f64>,
@@ -131,7 +132,7 @@ fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Shee
         path.extend([[x(start + third), y(heights[1])], [x(end - third), y(heights[2])], [x(end), y(high)]]);
     }
     sheet.curve(ink, 2.0, &path);
-    // Markers of different curves stand at different times, so that none hides another.
+    // Markers of different curves are at different times, so that none hides another.
     for k in (8 + 8 * (number % 4)..=SAMPLES as usize).step_by(32) {
         if values[k].is_finite() {
             sheet.marker(ink, [x(times[k]), y(values[k])]);
@@ -151,7 +152,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Draws a row of bars: sets of time as far as they lie in `[0, 1]`; a single time is a diamond.
+/// Draws a row of bars: the parts of sets of time in `[0, 1]`; a single time is a diamond.
 fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
@@ -163,7 +164,7 @@ fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sh
     }
 }
 
-/// Sets of time as far as they lie in the step, in words.
+/// Describes the parts of sets of time within the step.
 fn within(list: &[Interval]) -> String {
     let parts: Vec<String> = list
         .iter()

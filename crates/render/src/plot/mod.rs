@@ -13,7 +13,7 @@ pub use passes::PassPlot;
 pub use residuals::{ResidualPlot, Series};
 pub use sheet::STEPS_AXIS;
 
-/// The place where a plot goes.
+/// The document that a plot is part of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Embedding {
     /// A file of its own, which brings its style along.

@@ -1,4 +1,4 @@
-//! How often each step looked for collisions: as it should have, and as it did.
+//! The number of detection passes of each step: as expected, and as logged.
 use super::{
     Embedding,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone},
@@ -11,7 +11,7 @@ pub struct PassPlot<'a> {
     pub title: &'a str,
     /// Detection passes of each step, from the first one on, as the reference makes them.
     pub expected: &'a [u32],
-    /// Those of the trace. `None` where its polynomials do not fill a whole number of passes.
+    /// The numbers of the trace. `None` if its polynomials do not fill a whole number of passes.
     pub actual: &'a [Option<u32>],
 }
 
@@ -42,7 +42,7 @@ impl PassPlot<'_> {
                 continue;
             }
             let x = columns.x(range.start);
-            // A step that differs stands for its column.
+            // A step that differs represents its column.
             let place = range.clone().find(|&place| self.differs(place));
             if place.is_some() {
                 differing.push(x);

@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// Widths of all sheets.
 pub const WIDTH: f64 = 640.0;
 
-/// Where the first and the last step stand in plots over the steps.
+/// The places of the first and the last step in plots over the steps.
 pub const LEFT: f64 = 64.0;
 pub const RIGHT: f64 = WIDTH - 16.0;
 
@@ -30,7 +30,7 @@ pub enum Ink {
 const SERIES: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
 
 impl Ink {
-    /// Returns the class of what is drawn along (`s`) or filled (`f`), and the color. Axes and grids are never filled.
+    /// Returns the class of a line (`s`) or an area (`f`), and the color. Axes and grids are never filled.
     fn class_and_color(self, kind: char) -> (String, &'static str) {
         match self {
             Self::Axis => ("ax".to_owned(), "#1b1f24"),
@@ -55,7 +55,7 @@ impl Ink {
     }
 }
 
-/// The place where a text stands relative to its place.
+/// The alignment of a text at its place.
 #[derive(Debug, Clone, Copy)]
 pub enum Anchor {
     Start,
@@ -75,7 +75,7 @@ pub enum Tone {
 #[derive(Debug)]
 pub struct Sheet {
     svg: String,
-    /// Whether the page's style sheet says everything about looks, so that the markup need not.
+    /// Whether the page's style sheet has all styles, so that the markup need not.
     is_styled: bool,
 }
 
@@ -107,7 +107,7 @@ impl Sheet {
         self.svg
     }
 
-    /// Returns an attribute about looks, where no style sheet says it.
+    /// Returns an attribute for the style, unless a style sheet has it.
     fn attribute_unless_styled(&self, attribute: &str, value: &str) -> String {
         if self.is_styled { String::new() } else { format!(" {attribute}=\"{value}\"") }
     }
@@ -206,7 +206,7 @@ impl Sheet {
 
     /// Draws a line of text; `[x, y]` is on its base line.
     pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
-        // A text starts at its place unless something else is said.
+        // A text starts at its place unless another alignment is set.
         let anchor = match anchor {
             Anchor::Start if self.is_styled => "",
             Anchor::Start => " text-anchor=\"start\"",
@@ -235,7 +235,7 @@ impl Sheet {
         self.text([RIGHT, name], Anchor::End, Tone::Faint, "step");
     }
 
-    /// Draws the line of a series, the `number`th of `most`, with its markers between those of the others.
+    /// Draws the line of a series, the `number`th of `most`, with its markers between the markers of the others.
     pub fn series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
         self.line(ink, 1.5, points);
         let every = (points.len() / 12).max(1);

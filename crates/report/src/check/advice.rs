@@ -1,11 +1,11 @@
-//! The place to look at: the part of the program that the likely mistake is in; where none is named, what the first
-//! finding's kind suggests.
+//! The place to check: the part of the program that the likely mistake is in. If no mistake is named, the first
+//! finding's kind suggests a place.
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 use fosssim_model::assignments::CollisionType;
 
-/// Places to look at; nothing where the explanations say it themselves: a known mistake says where to look, a
+/// Returns the places to check. There are none if the explanations name them: a known mistake says where it is, a
 /// polynomial has its name.
 pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::first(check) else { return Vec::new() };
@@ -45,7 +45,7 @@ fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'st
     })
 }
 
-/// Returns the advice by the kind of the first finding: what comes later often follows from it.
+/// Returns the advice by the kind of the first finding: later findings often follow from it.
 fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
     if let Some(advice) = milestone_advice(finding, collisions) {
         return advice;

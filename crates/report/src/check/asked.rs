@@ -3,7 +3,7 @@ use fosssim_findings::{Outcome, Overall, Stop};
 use fosssim_judge::{Unreadable, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
-/// Returns whether there is something to explain: the fair rules know better what is a mistake.
+/// Returns whether there is something to explain: the fair rules decide what is a mistake.
 #[must_use]
 pub fn is_wrong(outcome: &Outcome) -> bool {
     match &outcome.fair {

@@ -6,10 +6,10 @@ use crate::{
 };
 use fosssim_judge::{Overall, fair::cause};
 
-/// The verdict of one rule book: its name, its word and how it looks, and its grounds.
+/// The verdict of one rule book: its name, its word with a style, and its grounds.
 pub(crate) type BookWords = (&'static str, Look, &'static str, String);
 
-/// Returns the verdicts of both books; nothing where the headline has said all.
+/// Returns the verdicts of both books; none if the headline has them.
 pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     let outcome = check.outcome;
     let judgement = outcome.fair.as_deref()?;
@@ -28,7 +28,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])
 }
 
-/// Renders the section; nothing where the headline has said all.
+/// Renders the section; empty if the headline has the verdicts.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
     for (name, look, word, grounds) in verdicts(check)? {

@@ -1,9 +1,9 @@
-//! Commands that look closer at the first thing that is wrong.
+//! Commands that show more of the first thing that is wrong.
 use super::{Check, first};
 use crate::describe::pair_key;
 
-/// Returns the commands, ready to be typed; none where nothing is wrong, or where the trace came from standard input
-/// and is gone.
+/// Returns the commands, ready to be typed. There are none if the trace is right, or came from standard input and can't
+/// be read again.
 pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);

@@ -16,7 +16,7 @@ pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     )
 }
 
-/// Returns where a finding is, for a heading.
+/// Returns the place of a finding, for a heading.
 pub(crate) fn place(finding: &Finding, steps: u32) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
     match finding.step {
@@ -68,7 +68,7 @@ pub(crate) struct Row {
 /// The values of a finding side by side, with remarks behind them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
-    /// Where the trace has them, for a reader who looks into its bytes.
+    /// The place of the records before the step in the trace, for a reader who inspects its bytes.
     before: Vec<String>,
     pub(crate) rows: Vec<Row>,
     pub(crate) after: Vec<String>,

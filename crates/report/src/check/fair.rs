@@ -11,7 +11,7 @@ use fosssim_judge::{
     share,
 };
 
-/// Renders the section; nothing when the fair rules were not asked.
+/// Renders the section; empty if the fair rules did not judge.
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
@@ -71,7 +71,7 @@ pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     table.render(style)
 }
 
-/// Returns the verdict's word, and its look.
+/// Returns the verdict's word and its style.
 pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     match fair.verdict {
         FairVerdict::Accepted => (Look::Good, "accepted"),
@@ -113,7 +113,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     }
 }
 
-/// Returns `coefficients 12 %, positions 3 %`; what was not used is left out.
+/// Returns `coefficients 12 %, positions 3 %`; unused shares are left out.
 fn shares(fair: &Judgement) -> Option<String> {
     let shares = fair.shares;
     let list: Vec<String> = [
@@ -133,7 +133,7 @@ fn percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Returns which of the books accepts a trace that the other one refuses.
+/// Returns which of the books accepts a trace that the other one rejects.
 pub(crate) const fn sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
         "the original fails this trace, the fair rules accept it"

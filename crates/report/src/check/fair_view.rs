@@ -11,9 +11,9 @@ view! {
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
     pub(super) struct FairView<'a> from fair: Judgement {
-        /// The verdict; none where judging was cut short, and nothing was wrong so far.
+        /// The verdict; none if judging was cut short, without a fault so far.
         verdict: FairVerdict = fair.verdict,
-        /// The reason why the trace is refused as a whole.
+        /// The reason why the trace is rejected as a whole.
         refusal: Option<FairRefusal> = fair.refusal,
         /// Steps with at least one finding; the first record is not a step.
         wrong_steps: u64 = fair.findings.wrong_steps,
@@ -23,13 +23,13 @@ view! {
         /// As at the top. Tolerances depend on the values, so they are null.
         findings: Vec<CountedView> =
             CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
-        /// Least and greatest factor of the polynomials; null where it is 1.
+        /// Least and greatest factor of the polynomials; null if it is 1.
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "Option<[crate::view::Number; 2]>")]
         factor: Option<[f64; 2]> = fair.factor,
         /// Which accepted form the approach polynomial of a particle and an edge has.
         approach_form: Form = fair.form,
-        /// Decisions that round-off may flip and that the trace has the other way; they are not charged.
+        /// Decisions that round-off may flip and that differ in the trace; they are not counted.
         borderline: BorderlineView<'a> =
             BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
         /// The largest share of its tolerances that something right uses, 0 to 1.
@@ -61,7 +61,7 @@ impl CountedView {
 struct BorderlineView<'a> {
     /// The number of all.
     count: u64,
-    /// The first ones.
+    /// The first of these decisions.
     examples: &'a [Borderline],
 }
 

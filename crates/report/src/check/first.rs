@@ -1,4 +1,4 @@
-//! The finding that a check looks at first.
+//! The finding that a check shows first.
 use super::{Check, follows::is_of_later_pass};
 use fosssim_judge::Finding;
 use fosssim_mistakes::diagnose::Explanation;
@@ -8,9 +8,9 @@ pub(crate) fn is_other_scene(check: &Check<'_>) -> bool {
     check.explanations.iter().any(Explanation::is_other_scene)
 }
 
-/// Returns the first finding that is worth a look: of the official book, or of the other one where the official has
-/// nothing. A formula of a later pass is no first fault where the fair rules charge something else in its step: they
-/// follow the trace's own positions, and so tell a wrong formula from wrong positions.
+/// Returns the first finding that deserves attention: of the official book, or of the other one if the official has
+/// none. A formula of a later pass is no first fault if the fair rules find something else in its step: they follow the
+/// trace's own positions, and so distinguish a wrong formula from wrong positions.
 pub(crate) fn first<'a>(check: &Check<'a>) -> Option<&'a Finding> {
     let fair = check.outcome.fair.as_ref().and_then(|fair| fair.findings.first_divergence.as_ref());
     let first = check.outcome.findings_by(check.book()).first_divergence.as_ref().or(fair)?;

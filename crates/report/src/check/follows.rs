@@ -22,9 +22,9 @@ pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
     is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
-/// Returns how many polynomials of a trace the original's rules find wrong that only follow from wrong positions: all
-/// of them, where the fair rules, which follow the trace's own positions, charge no formula, but the positions of later
-/// passes; or where they charge states alone, and the first formulas that differ are those of later passes.
+/// Counts the polynomials that the original's rules find wrong only because positions are wrong. These are all of them
+/// if the fair rules, which follow the trace's own positions, find no wrong formula except in later passes. The same
+/// holds if they find wrong states only, and the first formulas that differ are those of later passes.
 pub(crate) fn count(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);

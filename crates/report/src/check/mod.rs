@@ -1,7 +1,7 @@
 //! The report on one trace: verdict, residuals, the fair rules, findings, first difference.
 //!
-//! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both say the
-//! same and depend on nothing but the outcome.
+//! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both have the
+//! same content, and depend only on the outcome.
 
 pub(crate) mod advice;
 mod asked;
@@ -47,11 +47,11 @@ pub struct Check<'a> {
     pub trace: &'a str,
     /// The outcome of judging.
     pub outcome: &'a Outcome,
-    /// Likely mistakes, the likeliest first; empty where nothing is wrong or nobody has asked.
+    /// Likely mistakes, the likeliest first; empty if the trace is right, or if they were not requested.
     pub explanations: &'a [Explanation],
-    /// Which rule books were asked.
+    /// The rule books that judged.
     pub rules: Rules,
-    /// The wrong steps, and which of them are shown one by one.
+    /// The wrong steps, and the choice of those that are shown one by one.
     pub steps: &'a WrongSteps,
     /// Whether certificates were audited, so that the counts of root searches are worth showing.
     pub audit: bool,
@@ -74,12 +74,12 @@ impl Check<'_> {
         self.outcome.ruling(self.book()).name()
     }
 
-    /// Returns whether the file is no trace at all, which is all that there is to say of it.
+    /// Returns whether the file is no trace at all; then the report says only that.
     pub(crate) fn is_no_trace(&self) -> bool {
         self.looks_like.is_some() && !self.accepted()
     }
 
-    /// Returns where the two rule books differ: which of them accepts the trace.
+    /// Returns the difference of the two rule books: the book that accepts the trace.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
         cause(self.outcome).map(fair::sides)
@@ -101,7 +101,7 @@ impl Check<'_> {
         text::render(self, style)
     }
 
-    /// Renders the steps that were asked for, with expected and actual values; nothing where none is wrong.
+    /// Renders the requested steps, with expected and actual values; empty if none is wrong.
     #[must_use]
     pub fn steps_text(&self, style: Style) -> Option<String> {
         steps::render(self, style)
@@ -133,7 +133,7 @@ impl Check<'_> {
     }
 }
 
-/// Returns how often the original prints each of its messages, in the words that graders of its output look for.
+/// Counts how often the original prints each of its messages, in the words that graders of its output search for.
 fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     let mut messages: BTreeMap<_, _> = FindingKind::ALL
         .into_iter()
@@ -167,35 +167,35 @@ view! {
         scene: &'a str = check.scene,
         /// The trace as typed.
         trace: &'a str = check.trace,
-        /// The rule books that were asked.
+        /// The requested rule books.
         rules: Rules = check.rules,
         /// The book that gives the verdict, the first difference, findings and wrong steps.
         official: Book = check.book(),
-        /// By the official book. Undecided: nothing is wrong so far, but judging was given up. Bad trace: it could not
-        /// be read to the scene's last step; by the fair rules also: it is damaged, or goes on after its last record.
+        /// By the official book. Undecided: no fault was found, but judging stopped early. Bad trace: it could not be
+        /// read to the scene's last step. By the fair rules it may also be damaged, or go on after its last record.
         #[schemars(extend("enum" = Ruling::ALL.map(Ruling::name)))]
         verdict: &'static str = check.verdict(),
         /// The reason for the verdict, in one line.
         summary: String = text::headline(check),
         /// The original's judgement.
         parity: Parity = Parity::from(check.outcome),
-        /// The fair rules' judgement; null when they were not asked.
+        /// The fair rules' judgement; null if they did not judge.
         fair: Option<FairView<'a>> = check.outcome.fair.as_deref().map(FairView::from),
-        /// The reason why the two rule books differ; null where they do not.
+        /// The reason why the two rule books differ; null if they agree.
         difference: Option<CauseView> = cause(check.outcome).as_ref().map(CauseView::from),
         /// The official book's first finding; null when there is none.
         first_divergence: Option<FindingView> =
             check.account().first_divergence.as_ref().map(|first| FindingView::by(check.book(), first)),
-        /// Per kind of finding of the official book the first one, and how many there are.
+        /// The first finding of each kind by the official book, and the number of each kind.
         findings: Vec<CountedView> =
             CountedView::all(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
         /// Advice by the kind of the first finding.
         advice: Vec<&'static str> = advice::lines(check),
-        /// Commands that look closer at the first finding.
+        /// Commands that show more of the first finding.
         commands: Vec<String> = closer::commands(check),
         /// Other facts worth knowing: damage, bytes behind the end.
         notes: Vec<String> = text::notes(check),
-        /// Likely mistakes, the likeliest first; empty where nothing is wrong, and with --no-explain.
+        /// Likely mistakes, the likeliest first; empty if nothing is wrong, and with --no-explain.
         explanations: Vec<ExplanationView> = check.explanations.iter().map(ExplanationView::from).collect(),
         /// Steps of the scene.
         steps: u32 = check.outcome.steps,
@@ -206,8 +206,8 @@ view! {
         /// The numbers of these steps, from 1; the first 1000.
         #[schemars(length(max = LISTED), inner(range(min = 1)))]
         wrong_step_numbers: Vec<u32> = steps::numbers(check),
-        /// With --all the wrong steps, the first 1000, with --step those asked for; null without both. By the official
-        /// book, or by the fair rules where the official book has found nothing.
+        /// With --all the wrong steps, the first 1000; with --step the requested steps; null without both. By the
+        /// official book, or by the fair rules if the official book found nothing.
         shown_steps: Option<Vec<WrongStepView>> = steps::views(check),
         /// The reason why judging stopped before the scene's last step; null when it did not.
         problem: Option<StopView> = check.outcome.stop_of(check.book()).as_ref().map(StopView::from),
@@ -225,13 +225,13 @@ view! {
     /// The original's judgement.
     #[schemars(deny_unknown_fields)]
     struct Parity from outcome: Outcome {
-        /// The original's verdict; none where grading did not come to its end.
+        /// The original's verdict; none if grading did not finish.
         overall: Overall = outcome.parity.overall,
         #[serde(flatten)]
         residuals: Residuals = outcome.parity.residuals,
         /// Whether collisions and polynomials are right; null without a verdict.
         collisions_passed: Option<bool> = outcome.parity.collisions_passed,
-        /// How often the original prints each of its messages; one that it does not print is left out.
+        /// How many times the original prints each of its messages; messages that it does not print are left out.
         messages: BTreeMap<&'static str, u64> = messages(outcome),
     }
 }

@@ -13,10 +13,10 @@ use serde::Serialize;
 /// The greatest number of wrong steps kept by number, and of those kept with their findings.
 pub const LISTED: usize = 1000;
 
-/// Which steps a report shows one by one.
+/// The steps that a report shows one by one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum StepChoice {
-    /// None; only the numbers of the wrong ones are kept.
+    /// No step; only the numbers of the wrong ones are kept.
     #[default]
     None,
     /// All wrong steps, the first [`LISTED`].
@@ -42,7 +42,7 @@ struct Steps {
     kept: Vec<Step>,
 }
 
-/// Hears which steps are wrong while a trace is judged.
+/// Collects the wrong steps while a trace is judged.
 #[derive(Debug, Clone, Default)]
 pub struct WrongSteps {
     shown: StepChoice,
@@ -51,13 +51,13 @@ pub struct WrongSteps {
 }
 
 impl WrongSteps {
-    /// Keeps what a report about these steps needs.
+    /// Creates the store for what a report about these steps needs.
     #[must_use]
     pub fn new(shown: StepChoice) -> Self {
         Self { shown, ..Self::default() }
     }
 
-    /// Returns the findings of a book; those that it could tell only from the whole trace are among them.
+    /// Returns the findings of a book, including those that follow only from the whole trace.
     fn by(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
@@ -114,7 +114,7 @@ impl Steps {
     }
 }
 
-/// Returns the steps of the official book, or of the other one, where the official has nothing.
+/// Returns the steps of the official book, or of the other one if the official book has none.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     let of = |book| (book, check.steps.by(book, check.outcome.findings_by(book)));
     let official = of(check.book());
@@ -129,17 +129,17 @@ pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
     check.steps.by(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
-/// Returns whether only certain steps are asked for, so that the rest of the report is left out.
+/// Returns whether only certain steps are requested, so that the rest of the report is left out.
 pub(super) fn only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, StepChoice::These(_))
 }
 
-/// Returns whether all wrong steps are asked for.
+/// Returns whether all wrong steps are requested.
 pub(super) fn all(check: &Check<'_>) -> bool {
     check.steps.shown == StepChoice::All
 }
 
-/// Returns the steps that were asked for, each with what is wrong in it; nothing when none was.
+/// Returns the requested steps, each with its findings; none if no step was requested.
 fn shown<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
     let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
     match &check.steps.shown {
@@ -149,7 +149,7 @@ fn shown<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a
     }
 }
 
-/// Renders the section about single steps; nothing when none was asked for, or none is wrong.
+/// Renders the section about single steps; empty if none was requested, or none is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
@@ -203,12 +203,12 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
 pub(super) struct WrongStepView {
     /// From 1; 0 is the first record.
     step: u32,
-    /// Per kind of finding the first one of the step, and how many the step has. Empty: nothing is wrong there, or the
+    /// The first finding of each kind in the step, and the number of each kind. Empty if the step is right, or if the
     /// trace can't be judged so far.
     findings: Vec<CountedView>,
 }
 
-/// Returns the steps that were asked for; nothing when none was.
+/// Returns the requested steps; none if no step was requested.
 pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
     let counted = |step: &Step| CountedView::all(book, &step.firsts, |kind| 1 + step.more.get(kind));

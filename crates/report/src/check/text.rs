@@ -45,7 +45,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     // The cause first, then where it shows first.
     let is_told = !is_other_scene(check);
     parts.extend(explanations(check, style).filter(|_| is_told));
-    // It comes again where all are shown.
+    // With all steps shown, it appears there again.
     let first = first(check).filter(|_| !steps::all(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(section("Where to look", "  - ", &advice::lines(check), style));
@@ -164,7 +164,7 @@ fn damaged(outcome: &Outcome) -> String {
     }
 }
 
-/// Returns where judging a trace ended, and why: one line.
+/// Returns the place at which judging a trace ended, and the reason: one line.
 #[must_use]
 pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = problem(stop, outcome);
@@ -175,12 +175,12 @@ pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
     format!("{what} {place}: {message}")
 }
 
-/// Returns whether judging ended at a limit of this program, which says nothing about the trace.
+/// Returns whether judging ended at a limit of this program, which is no fault of the trace.
 const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Returns where judging a trace ended, what is the matter, and what to look at; nothing where the matter asks.
+/// Returns where judging a trace ended, the reason, and the place to check; nothing if there is no such reason.
 pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {

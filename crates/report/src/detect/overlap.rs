@@ -1,4 +1,4 @@
-//! The report on a decision of `simple` handling: overlap, approach, and what follows.
+//! The report on a decision of `simple` handling: overlap, approach, and result.
 use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, motion, title};
 use crate::{
     number::exact,
@@ -117,7 +117,7 @@ const fn not(is: bool) -> &'static str {
     if is { "" } else { "do not " }
 }
 
-/// A pair at the end of a step, as simple collision handling looks at it.
+/// A pair at the end of a step, as simple collision handling checks it.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct OverlapView {

@@ -6,7 +6,7 @@ use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 /// The greatest number of scenes that are named.
 const NAMED: usize = 5;
 
-/// Returns the lines about the changes, with the look of each: points, and scenes by what became of them.
+/// Returns the lines about the changes, with the style of each: points, and scenes by what became of them.
 pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let Some(changes) = grade.changes() else { return Vec::new() };
     let name = |scene: &&SceneGrade| scene.scene.clone();

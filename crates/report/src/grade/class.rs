@@ -11,7 +11,7 @@ use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
 use std::{cmp::Ordering, collections::BTreeMap, fmt::Write};
 
-/// The number of submissions that were run on a scene, and how many of these it was accepted for.
+/// The number of submissions that were run on a scene, and of those that it was accepted for.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct SceneShare {
     pub(crate) accepted: usize,
@@ -74,7 +74,7 @@ pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The figures of a class: of the points, those of the submissions that ran.
+/// The figures of a class; those about points count only submissions that ran.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ClassFigures {
     pub(crate) submissions: usize,
@@ -162,7 +162,7 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     }
     let known = order.into_iter().map(|scene| (scene, shares[scene])).filter(|(_, share)| share.run > 0);
     let (whole, mut wrong): (Vec<_>, Vec<_>) = known.partition(|(_, share)| share.accepted == share.run);
-    // Shares compared as fractions; stable, so that equal ones stay in the suite's order.
+    // Shares are compared as fractions; the sort is stable, so that equal shares stay in the suite's order.
     wrong.sort_by(|(_, a), (_, b)| (a.accepted * b.run).cmp(&(b.accepted * a.run)));
     (wrong, whole.len())
 }

@@ -35,10 +35,9 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 }
 
 /// Returns one row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge
-/// differently. Points are empty where the grader failed or was stopped; `reason` says in one sentence why not
-/// everything is accepted, `same_program` names the others with the same program, and `worth` is what mending the first
-/// likely mistake is worth. Entries that are no submissions
-/// have rows with nothing but the reason.
+/// differently. Points are empty if the grader failed or was stopped; `reason` is one sentence why not everything is
+/// accepted, `same_program` names the others with the same program, and `worth` is what mending the first likely
+/// mistake is worth. Entries that are no submissions have rows with only the reason.
 #[must_use]
 pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
@@ -77,7 +76,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     write(head, rows.chain(rest))
 }
 
-/// Rows that say why an entry is not graded, in the column for reasons.
+/// Returns rows with the reason why an entry is not graded, in the column for reasons.
 fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec<Vec<String>> {
     let cell = |entry: &PassedOver, column: &str| match column {
         "submission" => safe(&entry.name),
@@ -100,8 +99,8 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// Returns text that no spreadsheet takes for a formula. What begins with an apostrophe and goes on like one gets
-/// another: two texts never become the same cell.
+/// Returns text that no spreadsheet takes for a formula. Text that begins like an escaped formula is escaped again, so
+/// that two texts never become the same cell.
 fn safe(text: &str) -> String {
     const FORMULAS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);

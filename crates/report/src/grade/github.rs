@@ -20,7 +20,7 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
             let words: String = printed(&build.output).chars().take(4000).collect();
             text += &annotation_of("error", &title, words.lines());
         }
-        // GitHub shows the first ten: what matters most comes first, and once.
+        // GitHub shows the first ten, so the most important ones come first, each only once.
         let head = head_lines(grade);
         if !head.is_empty() && grade.failed_build().is_none() {
             let title = format!("{}: {}, {}", grade.submission, grade.verdict, score(grade));

@@ -61,7 +61,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
-                    // A test that only staff sees may say all.
+                    // A test that only staff sees may show everything.
                     None if tells_all || group.visibility == Visibility::Hidden => output(scene),
                     None => {
                         let mut scene = scene.clone();
@@ -110,7 +110,7 @@ pub(crate) fn render(grade: &Grade) -> String {
 }
 
 fn overall(grade: &Grade) -> String {
-    // Text that everybody reads at once says nothing about groups that not everybody sees.
+    // Text that every reader sees immediately must not describe groups that some readers do not see.
     let all_visible = grade.is_visible();
     let mut lines = vec![match grade.points {
         Some(_) if !all_visible => "Graded.".to_owned(),
@@ -123,7 +123,7 @@ fn overall(grade: &Grade) -> String {
     if let Some(build) = grade.failed_build() {
         lines.push(format!("{}\n{}", plain(&words::build(&build.end)), printed(&build.output)));
     } else {
-        // A fault of the upload itself tells of no scene.
+        // A fault of the upload itself reveals no scene.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
     }
@@ -131,7 +131,7 @@ fn overall(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// Returns the message to a student when the platform's time was up: it says what used the time.
+/// Returns the message to a student when the platform's time was over; it names what used the time.
 fn out_of_time(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(
@@ -165,7 +165,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.join("\n")
 }
 
-/// Returns the points with six decimals at most, so that shares of a group add up to what is shown.
+/// Returns the points with six decimals at most, so that shares of a group add up to the shown sum.
 fn rounded(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

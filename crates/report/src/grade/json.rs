@@ -18,11 +18,11 @@ use fosssim_mistakes::together::{likely_mistake, likely_mistakes, worth};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The version of the schema; it rises when a reader of the old one would misunderstand the new one.
+/// The version of the schema; it rises if a reader of the old version would misunderstand the new one.
 const SCHEMA: u32 = 4;
 
-/// The document of `grade --format json`. The number in `schema` rises when a reader of the old one would misunderstand
-/// the new one.
+/// The document of `grade --format json`. The number in `schema` rises if a reader of the old version would
+/// misunderstand the new one.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(crate) struct GradeDocument {
@@ -46,7 +46,7 @@ view! {
         submission: String = plain(&grade.submission),
         /// The suite's name.
         suite: String = plain(&grade.suite),
-        /// The rule books that were asked.
+        /// The requested rule books.
         rules: Rules = grade.rules,
         /// The book that gives verdicts and points.
         official: Book = grade.rules.official(),
@@ -56,7 +56,7 @@ view! {
         /// The verdict as one word, such as `AC`.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = grade.verdict.code(),
-        /// Null when the grader failed or was stopped: that is nobody's zero.
+        /// Null if the grader failed or was stopped; no student gets a zero for that.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = grade.points,
         /// Points that can be reached.
@@ -69,21 +69,22 @@ view! {
         sandbox: Vec<String> = grade.layers.clone(),
         /// Weaknesses of the sandbox.
         warnings: Vec<String> = grade.warnings.iter().map(|warning| plain(warning)).collect(),
-        /// The way the build ended; null where the suite builds nothing.
+        /// The way the build ended; null if the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
-        /// The contents that the scenes have in common in which the program crashes or runs into a limit; null where
+        /// The contents that the scenes have in common in which the program crashes or runs into a limit; null if
         /// nothing is known.
         located: Option<LocatedView> = grade.located.as_ref().map(LocatedView::from),
         /// The mistake that explains most wrong scenes, where several have explanations.
         likely_mistake: Option<ExplanationView> = likely_mistake(grade).as_ref().map(ExplanationView::from),
-        /// Up to three mistakes that explain the wrong scenes together, the one that explains most first.
+        /// Up to three mistakes that explain the wrong scenes together, the most frequent first.
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
             likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
-        /// The points of the scenes that each of these mistakes alone makes wrong: what mending it is worth.
+        /// The points of the scenes that only this mistake makes wrong, for each of these mistakes: the worth of
+        /// mending it.
         #[schemars(length(max = 3))]
         worth: Vec<f64> = likely_mistakes(grade).iter().map(|(mistake, _)| worth(grade, mistake)).collect(),
-        /// The smallest scene for each cause; left out where these were not asked for.
+        /// The smallest scene for each cause; left out if they were not requested.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         smallest: Vec<SmallestView> = grade.smallest.iter().map(SmallestView::from).collect(),
         /// The course's own words on these mistakes, by their keys; left out where there are none.
@@ -107,7 +108,7 @@ view! {
     /// The changes since an earlier grading of the same submission.
     #[schemars(deny_unknown_fields)]
     struct ChangesView from changes: Changes<'_> {
-        /// Points in the earlier grading; null where it had none.
+        /// Points in the earlier grading; null if it had none.
         points: Option<f64> = changes.points,
         /// Points that could be reached then.
         max_points: f64 = changes.max_points,
@@ -163,7 +164,7 @@ view! {
         /// The worst verdict of its scenes.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]
         verdict: &'static str = group.verdict.name(),
-        /// Points reached, those for speed included; null where a scene has none.
+        /// Points reached, including those for speed; null if a scene has none.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = group.points,
         /// Points that can be reached.
@@ -223,11 +224,11 @@ view! {
         code: &'static str = scene.verdict.code(),
         /// The reason for the verdict, in one line.
         summary: String = plain(&words::summary(scene)),
-        /// The reason why the two rule books judge the scene differently; null where they do not.
+        /// The reason why the two rule books judge the scene differently; null if they do not.
         difference: Option<CauseView> = scene.differs.as_ref().map(CauseView::from),
-        /// Where the trace diverges first, and how many findings there are of each kind, as far as hints allow.
+        /// The place where the trace diverges first, and the number of findings of each kind, if hints allow it.
         details: Vec<String> = words::details(scene).iter().map(|detail| plain(detail)).collect(),
-        /// Likely mistakes, the likeliest first, as far as hints allow.
+        /// Likely mistakes, the likeliest first, if hints allow it.
         explanations: Vec<ExplanationView> = scene.settled.iter().map(ExplanationView::from).collect(),
         /// Points reached; null when the grader failed, or did not come to run it.
         #[schemars(range(min = 0.0))]
@@ -245,7 +246,7 @@ view! {
         /// The wall time of the run.
         #[schemars(range(min = 0.0))]
         wall_seconds: f64 = scene.measured.wall.as_secs_f64(),
-        /// The most memory that it had; null where that is not known.
+        /// The most memory that it used; null if that is not known.
         memory_bytes: Option<u64> = scene.measured.memory,
         /// The program's output, cut where it is long.
         stdout: String = printed(&scene.stdout),

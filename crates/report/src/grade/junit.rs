@@ -21,7 +21,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                 suite.add_property(quick_junit::Property::new(format!("likely_mistake.{number}"), plain(line)));
             }
             for scene in wrong_first(std::iter::once(group)) {
-                // A case of its own has no place for what is neither its result nor the program's output.
+                // A test case has no place of its own for anything but its result and the program's output.
                 if let Some(words) = difference(scene) {
                     let name = format!("rules_differ.{}", plain(&scene.scene));
                     suite.add_property(quick_junit::Property::new(name, words));
@@ -43,7 +43,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     report.to_string().unwrap_or_default()
 }
 
-/// Returns a suite of one case: what is wrong with the submission itself, so that no scene was run.
+/// Returns a suite of one case: the fault of the submission itself, so that no scene was run.
 fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.name());

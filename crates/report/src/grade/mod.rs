@@ -1,8 +1,7 @@
 //! Grades in every format that courses use: pure functions from [`Grade`] to text.
 //!
-//! Names and program output are somebody else's words. Each format has `plain` or `one_line` of `foreign` take control
-//! characters out of them, and escapes what its own syntax gives a meaning; a test sends hostile words through every
-//! format.
+//! Names and program output are words of others. Each format removes their control characters by `plain` or `one_line`
+//! of `foreign`, and escapes what its own syntax gives a meaning. A test sends hostile words through every format.
 
 mod changes;
 mod class;
@@ -19,7 +18,7 @@ mod text;
 
 use fosssim_findings::Grade;
 
-/// Returns the JSON document alone, for programs: without what the other formats need.
+/// Returns the JSON document alone, for programs: without the data of other formats.
 #[must_use]
 pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])

@@ -1,4 +1,4 @@
-//! The entries of a class's folder that are no submissions, in every format: a list says who is missing in it.
+//! The entries of a class's folder that are no submissions, in every format: each list names what is missing in it.
 use super::shortened;
 use crate::{
     foreign::one_line,

@@ -7,8 +7,8 @@ use fosssim_mistakes::{diagnose::Explanation, together};
 /// The text in place of a verdict where an entry is no submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// Returns the lines above all scenes in a report for one reader: what is wrong with the submission itself, or where it
-/// fails and what its likely mistakes are.
+/// Returns the lines above all scenes in a report for one reader: the fault of the submission itself, or its failures
+/// and its likely mistakes.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::unfit(grade) {
@@ -28,19 +28,18 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// Returns what mending a mistake is worth, such as `worth 21.4 of 100 points`; nothing where no points are lost by it
-/// alone.
+/// Returns the worth of mending a mistake, such as `worth 21.4 of 100 points`; empty if it alone costs no points.
 pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     let lost = together::worth(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", score(lost, grade.max_points)))
 }
 
-/// Returns the course's own words on a mistake, to follow ours; nothing where there are none.
+/// Returns the course's own words on a mistake, to follow ours; empty if there are none.
 pub(crate) fn note(grade: &Grade, mistake: &Explanation) -> String {
     grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
-/// Returns the number of scenes for which an explanation is looked for, with their noun.
+/// Returns the number of scenes for which an explanation is searched, with their noun.
 pub(crate) fn wrong_scenes(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     counted(wrong.count() as u64, "wrong scene")
@@ -95,7 +94,7 @@ pub fn score(reached: f64, most: f64) -> String {
     format!("{} of {} point{plural}", points(reached), points(most))
 }
 
-/// Returns the points that may be missing: where the grader failed or was stopped nobody has a zero.
+/// Returns the points, which may be missing: if the grader failed or was stopped, there is no zero.
 #[must_use]
 pub fn reached(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), points)

@@ -7,7 +7,7 @@ use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 
-/// PrairieLearn refuses more than a megabyte; texts are cut long before.
+/// PrairieLearn rejects more than a megabyte; texts are cut long before.
 const LONGEST_TEXT: usize = 4000;
 
 #[derive(Serialize)]
@@ -121,7 +121,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     document(&results)
 }
 
-/// Returns everything about a scene that its message does not say.
+/// Returns everything about a scene that is not in its message.
 fn output(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = difference(scene).into_iter().collect();
     lines.extend(words::details(scene));

@@ -13,7 +13,7 @@ use fosssim_mistakes::together::settle;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Returns a reason of these words: somebody else's may stand in every report.
+/// Returns a reason with these words, to test that words of others may stand in every report.
 pub(crate) fn saying(words: &str) -> Reason {
     Reason::Failed(Failure::Machine(words.to_owned()))
 }

@@ -13,7 +13,7 @@ use fosssim_render::{
 };
 use std::fmt::Write;
 
-/// Renders a call under its name, folded unless it is to be open.
+/// Renders a call under its name, folded unless it is open from the start.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let opened = if open { " open" } else { "" };
     let mut out = format!(
@@ -31,7 +31,7 @@ pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) ->
         }
     };
     let _ = writeln!(out, "<p>{}</p>", text(&Detect { study, place: None }.decision(general)));
-    // Curves without a zero are flat lines: words say it better.
+    // Curves without a zero are flat lines; words describe them better.
     if study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero))) {
         let title = format!("Expected in step {step}: {}", PairWords(call.pair));
         let _ = writeln!(out, "<figure>{}</figure>", detection::picture(study, &title, Embedding::Inline));
@@ -81,7 +81,7 @@ fn is_flat(set: &[Interval]) -> bool {
     !ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
-/// Returns the curves of the trace, as the expected ones are drawn.
+/// Returns the curves of the trace, drawn as the expected curves are.
 fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
@@ -111,7 +111,7 @@ fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
     !own.is_empty() && marks(curve.logged.coefficients(), own).contains(&true)
 }
 
-/// Returns where a polynomial of a trace is positive; nothing where its zeros can't be found.
+/// Returns the intervals in which a polynomial of a trace is positive; none if its zeros can't be found.
 fn positive(own: &[f64]) -> Vec<Interval> {
     match own.len() <= 6 && own.iter().all(|c| c.is_finite()) {
         true => positive_set(own).map(|set| set.as_slice().to_vec()).unwrap_or_default(),
@@ -119,7 +119,7 @@ fn positive(own: &[f64]) -> Vec<Interval> {
     }
 }
 
-/// Returns where within the step all polynomials of a trace are positive.
+/// Returns the intervals within the step in which all polynomials of a trace are positive.
 fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
     let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
     for own in logged.iter().map(|own| positive(own)) {
@@ -190,8 +190,8 @@ fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
     out + "</tbody></table></div>\n"
 }
 
-/// Says for each power whether the coefficients differ once one is multiplied by the factor that makes most of them
-/// agree.
+/// Describes for each power whether the coefficients differ once one is multiplied by the factor that makes most of
+/// them agree.
 fn marks(expected: &[f64], own: &[f64]) -> Vec<bool> {
     let differing = differing(expected, own, factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()

@@ -1,4 +1,4 @@
-//! The card of a scene: what is drawn of a wrong trace while it is at hand, for pages that are put together later.
+//! The card of a scene: the picture and words of a wrong trace, for pages that are put together later.
 use super::{Case, data, packed::Precision};
 use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// The placeholder for the key of a card until its page is known. No text holds it: text has no control characters.
 const KEY: &str = "\u{1}";
 
-/// The placeholder for what all scenes together say about its mistake, which is known later, too.
+/// The placeholder for the cause that all scenes together give, which is known only later.
 const CAUSE: &str = "\u{2}";
 
 /// A card.
@@ -14,9 +14,9 @@ const CAUSE: &str = "\u{2}";
 pub struct Card {
     /// The part that needs no script.
     html: String,
-    /// The motions and what the viewer tells of them; empty where there is no motion.
+    /// The motions, and the findings that the viewer shows; empty without a motion.
     data: String,
-    /// The data with rounded motions, for a page that has no room for exact ones; empty where that saves nothing.
+    /// The data with rounded motions, for a page without room for exact ones; empty if that saves nothing.
     #[serde(default)]
     rounded: String,
 }
@@ -25,7 +25,7 @@ pub struct Card {
 const SMALL: usize = 60_000;
 
 impl Card {
-    /// Returns the card of a case below a heading of this depth; nothing where hints are to say nothing.
+    /// Returns the card of a case below a heading of this depth; nothing if hints forbid it.
     #[must_use]
     pub fn for_case(case: &Case<'_>, depth: usize) -> Option<Self> {
         if case.hints == Hints::None {
@@ -39,7 +39,7 @@ impl Card {
         Some(Self { html: case.trace_part(KEY, depth, CAUSE), data, rounded })
     }
 
-    /// Returns a card that only says something.
+    /// Returns a card with words only.
     #[must_use]
     pub fn saying(words: &str) -> Self {
         Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
@@ -63,7 +63,7 @@ impl Card {
         serde_json::from_str(text).ok()
     }
 
-    /// Returns the bytes of what is there without script, and of the motions.
+    /// Returns the bytes of the part without script, and of the motions.
     pub(super) fn sizes(&self) -> (usize, usize) {
         (self.html.len(), self.data.len())
     }
@@ -84,7 +84,7 @@ impl Card {
         self.data.replace(KEY, key)
     }
 
-    /// Returns the bytes of rounded motions; `None` where they are no smaller than the others.
+    /// Returns the bytes of rounded motions; `None` if they are no smaller than the others.
     pub(super) fn rounded_size(&self) -> Option<usize> {
         (!self.rounded.is_empty()).then_some(self.rounded.len())
     }

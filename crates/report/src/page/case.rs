@@ -78,8 +78,8 @@ impl Case<'_> {
         first(&self.check).filter(|_| self.hints == Hints::Full)
     }
 
-    /// Returns the part about the trace, below a heading of the given depth: the motion beside its cause and the first
-    /// values that are wrong, and all that needs more room below.
+    /// Returns the part about the trace, below a heading of the given depth: the motion next to its cause and the first
+    /// wrong values, and below all that needs more room.
     pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
         let evidence = self.evidence.filter(|evidence| !evidence.steps.is_empty());
         let mut out = format!("<div class=\"split{}\">\n", if evidence.is_some() { " has-motion" } else { "" });
@@ -104,7 +104,7 @@ impl Case<'_> {
         out
     }
 
-    /// Returns where the trace can't be followed any further, why, and what to look at.
+    /// Returns where the trace can't be followed any further, the reason, and the place to check.
     fn stopped(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
@@ -129,7 +129,7 @@ impl Case<'_> {
         format!("<p class=\"hint\">{words}</p>\n")
     }
 
-    /// Returns where it goes wrong first, where to look, and what the rule books say.
+    /// Returns the first wrong place, the place to check, and the verdicts of the rule books.
     fn side(&self, depth: usize) -> String {
         let outcome = self.check.outcome;
         let heading = |words: &str| format!("<h{0}>{words}</h{0}>\n", depth + 1);
@@ -211,7 +211,7 @@ fn step_of(step: u32, steps: u32) -> String {
     }
 }
 
-/// Returns the subject of a finding, where a table beside it has its values.
+/// Returns the subject of a finding whose values are in a table next to it.
 fn subject(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
@@ -255,7 +255,7 @@ fn values(sides: &SideBySide) -> String {
     out
 }
 
-/// Returns a value with nothing beside it to be compared with; the title has its last bit.
+/// Returns a value without another to compare it with; the title has all its digits.
 fn alone(value: Value) -> String {
     match value {
         Value::Number(number) => markup::number(number),
@@ -263,7 +263,7 @@ fn alone(value: Value) -> String {
     }
 }
 
-/// Returns the first ones of some calls, each with its step; the first one is open.
+/// Returns the first of some calls, each with its step; the first one is open.
 fn some(calls: &[(u32, &InspectedCall)], depth: usize, open: bool) -> String {
     let call =
         |(number, (step, one)): (usize, &(u32, &InspectedCall))| call::html(*step, one, depth + 2, open && number == 0);
@@ -284,7 +284,7 @@ pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> S
         if is_likely {
             out += "<p class=\"label\">Likely mistake</p>";
         }
-        // The first sentence leads; what it is an instance of comes below.
+        // The first sentence is the heading; its general rule follows below.
         let (lead, more) = what.split_once(". ").unwrap_or((&what, ""));
         let dot = if more.is_empty() { "" } else { "." };
         let _ = write!(out, "<p class=\"lead\">{}{dot}</p>", text(lead));
@@ -319,8 +319,8 @@ fn books(check: &Check<'_>, heading: &str) -> String {
     format!("<section class=\"card\">{heading}<ul class=\"books\">{lines}</ul></section>\n")
 }
 
-/// Returns the bound beyond which a book calls a state wrong. By the fair rules it grows with the numbers; shown is
-/// that of the largest ones.
+/// Returns the bound beyond which a book calls a state wrong. By the fair rules the bound grows with the numbers; the
+/// one of the largest numbers is shown.
 fn bound(evidence: &Evidence, book: Book) -> f64 {
     match book {
         Book::Parity => PARITY_MAXIMUM,

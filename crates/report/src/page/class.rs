@@ -39,7 +39,7 @@ pub struct ClassPage<'a> {
     pub grades: &'a [Grade],
     /// The entries that are no submissions.
     pub passed_over: &'a [PassedOver],
-    /// The address of a submission's page, seen from this one.
+    /// The address of a submission's page, relative to this one.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
 
@@ -63,7 +63,7 @@ impl ClassPage<'_> {
     }
 
     fn link(&self, grade: &Grade) -> String {
-        // A name that is written from right to left turns nothing around that stands beside it.
+        // A name that is written from right to left must not turn the text around it.
         format!("<a href=\"{}\"><bdi>{}</bdi></a>", text(&(self.page)(grade)), text(&one_line(&grade.submission)))
     }
 
@@ -282,7 +282,7 @@ impl ClassPage<'_> {
         }
     }
 
-    /// Returns a scene, as a link to the first submission that shows what goes wrong in it.
+    /// Returns a scene, as a link to the first submission that shows its fault.
     fn shown(&self, name: &str) -> String {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         let words = text(&one_line(name));
@@ -330,7 +330,7 @@ fn short(words: &str) -> String {
     if cut.len() < words.len() { cut + "..." } else { cut }
 }
 
-/// Returns whether a scene counts as failed: what was not run and what the grader failed on does not.
+/// Returns whether a scene counts as failed: scenes that were not run, or on which the grader failed, do not.
 fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
@@ -379,7 +379,7 @@ fn heat(grade: &Grade) -> String {
     out + "</svg>"
 }
 
-/// Returns how a scene that is not accepted is drawn: wrong, without a trace that can be judged, or not run.
+/// Returns the style of a scene that is not accepted: wrong, without a trace that can be judged, or not run.
 fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
     match scene.verdict {
         Verdict::Accepted => None,
@@ -427,7 +427,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     several
 }
 
-/// Returns how many submissions reach which share of the points.
+/// Returns the number of submissions for each share of the points.
 fn histogram(grades: &[Grade]) -> String {
     let shares: Vec<f64> = grades
         .iter()

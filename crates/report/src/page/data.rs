@@ -20,7 +20,7 @@ use std::fmt::Write;
 
 /// Returns all data blocks of a case.
 pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
-    // Below full hints a page holds nothing but what the program wrote itself.
+    // Below full hints a page holds only what the program wrote itself.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
     // A motion that is the same to the last bit need not be there twice.

@@ -8,9 +8,8 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{self as student};
 
 impl WhatIf {
-    /// Returns the run of the reference with the mistake that is named, beside the trace. Nothing where no step was
-    /// reproduced with it, where the trace was not kept whole (`None`), or where the evidence does not hold the whole
-    /// motion.
+    /// Returns the run of the reference with the named mistake, next to the trace. There is none if no step was
+    /// reproduced with it, if the trace was not kept whole (`None`), or if the evidence does not hold the whole motion.
     #[must_use]
     pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
         // A motion that is not there as a whole is not made as a whole either, and can't be compared.
@@ -25,7 +24,7 @@ impl WhatIf {
     }
 }
 
-/// Returns the page about one trace that was judged, with all hints: its author has asked.
+/// Returns the page about one trace that was judged, with all hints, because its author requests it.
 #[must_use]
 pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;

@@ -1,4 +1,4 @@
-//! The page of `explain`: what is likely wrong with a program, trace by trace and all together.
+//! The page of `explain`: the likely mistakes of a program, trace by trace and all together.
 use super::{
     Card,
     case::mistakes,
@@ -11,11 +11,11 @@ use crate::{case::Case, diagnosis::Diagnosis, words::first_divergence};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 
-/// One trace with what was drawn of it.
+/// One trace with its pictures.
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
-/// Returns how much it takes to see what is wrong: without pictures, by another mistake than the common ones, by
-/// several that can't be told apart, and how large the motion is. The least is the most telling.
+/// Returns how hard the fault is to see; the smallest value is the clearest case. These cases come later: no pictures,
+/// another mistake than the common ones, several mistakes that can't be distinguished, a large motion.
 fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
     let own = &case.explanations;
     (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))
@@ -24,7 +24,7 @@ fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, us
 /// A page about some traces of one program.
 #[derive(Debug, Clone)]
 pub struct ExplainedPage<'a> {
-    /// All that is to be said.
+    /// The diagnosis that the page shows.
     pub diagnosis: &'a Diagnosis,
     /// The card of each of its traces, in their order, then that of each of its smallest scenes.
     pub cards: &'a [Option<Card>],
@@ -46,7 +46,7 @@ impl ExplainedPage<'_> {
         };
         let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));
         body.extend(located.as_ref().map(graded::located));
-        // A single trace says it itself.
+        // A single trace has these words itself.
         for one in common.iter().filter(|_| cases.len() > 1) {
             let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
             let _ = writeln!(body, "<h2>Likely cause of {explained} of {wrong} wrong traces</h2>");

@@ -1,4 +1,4 @@
-//! The page of one submission: what it got, its likely mistakes, and a card per scene.
+//! The page of one submission: its points, its likely mistakes, and a card per scene.
 use super::{
     Card,
     case::mistakes,
@@ -25,26 +25,26 @@ use std::{borrow::Cow, fmt::Write};
 /// The greatest number of characters shown of a program's output in a scene.
 const OUTPUT: usize = 2_000;
 
-/// Whom a page is for.
+/// The readers of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Audience {
     /// Staff: every group is on it, with the word who sees it.
     #[default]
     Staff,
-    /// The student: nothing is on it but groups that students see at once, and what follows from these.
+    /// The student: the page has only groups that students see immediately, and what follows from these.
     Student,
 }
 
-/// One submission's grade with what was drawn of its traces.
+/// One submission's grade with the pictures of its traces.
 #[derive(Clone, Copy)]
 pub struct GradePage<'a> {
     /// The grade.
     pub grade: &'a Grade,
     /// The card of this name, where it was kept.
     pub card: &'a dyn Fn(Option<&str>) -> Option<Card>,
-    /// The address of the class's page, seen from this one.
+    /// The address of the class's page, relative to this one.
     pub class: Option<&'a str>,
-    /// Whom it is for.
+    /// The reader of the page.
     pub reader: Audience,
 }
 
@@ -78,7 +78,7 @@ impl GradePage<'_> {
         if all.is_empty() { all } else { format!("<h2>The smallest scenes on which it is wrong</h2>\n{all}") }
     }
 
-    /// Returns the scenes that have something to tell, the most telling one first and the others in their order.
+    /// Returns the scenes that have a card, the clearest first and the others in their order.
     fn cards<'g>(&self, grade: &'g Grade) -> Vec<(&'g SceneGrade, Option<Card>)> {
         let scenes = grade.scenes().filter(|scene| is_told(scene));
         let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene.card.as_deref()))).collect();
@@ -132,7 +132,7 @@ impl GradePage<'_> {
         }
         out.extend(grade.located.as_ref().map(located));
         out += "<div class=\"split halves\">\n";
-        // A fault of the submission itself says it all.
+        // A fault of the submission itself explains everything.
         let likely = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
         if !likely.is_empty() {
             let wrong = wrong_scenes(grade);
@@ -163,7 +163,7 @@ impl GradePage<'_> {
     }
 }
 
-/// Returns where a program fails.
+/// Returns the common properties of scenes in which a program fails.
 pub(super) fn located(found: &LocatedFailure) -> String {
     let words = text(&one_line(&words::located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
@@ -174,16 +174,17 @@ fn likely(grade: &Grade) -> Vec<Explanation> {
     likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
 }
 
-/// Returns the place of a scene among those to look at first; the least comes first. In this order it counts whether
-/// nothing was drawn; whether the rule books differ, so that it may be a consequence or round-off; which of the likely
-/// mistakes explains it, if any; how many other mistakes would do the same there; how large its motion is.
+/// Returns the rank of a scene among those to read first; the smallest rank comes first. The rank counts in this order:
+/// whether nothing was drawn; whether the rule books differ, so that it may be a consequence or round-off; which of the
+/// likely mistakes explains it, if any; how many other mistakes would have the same effect there; how large its motion
+/// is.
 fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
     let own = &scene.explanations;
     (card.is_none(), scene.differs.is_some(), rank(likely, own), own.len(), card.map_or(0, |card| card.sizes().1))
 }
 
-/// Returns which of the likely mistakes is the first among some explanations; other explanations come behind all of
-/// them, and none at all last.
+/// Returns the rank of the first of the likely mistakes among some explanations; other explanations come after all of
+/// them, and none at all comes last.
 pub(super) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
     let named = likely.iter().position(|one| is_named_in(one, own));
     named.unwrap_or(likely.len() + usize::from(own.is_empty()))
@@ -242,7 +243,7 @@ fn books(grade: &Grade) -> String {
     }
 }
 
-/// Returns whether a scene has something to tell.
+/// Returns whether a scene has details to show.
 fn is_told(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
@@ -302,7 +303,7 @@ fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, 
         points(scene.max_points),
         text(&one_line(&words::summary(scene))),
     );
-    // A detail that a card shows with its values need not be said again.
+    // A detail that a card shows with its values is not repeated.
     let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
     let details = words::details(scene).into_iter().skip(usize::from(is_shown));
     let lines: Vec<String> = difference(scene).into_iter().chain(details).collect();
@@ -343,7 +344,7 @@ pub(super) fn key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns the output of a program, as far as there is room.
+/// Returns the output of a program, cut to the room that is left.
 fn printed(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();

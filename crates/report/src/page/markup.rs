@@ -17,7 +17,7 @@ pub(super) fn visible(raw: &str) -> String {
     out
 }
 
-/// Escapes visible text as it may stand in an element or in a quoted attribute.
+/// Escapes visible text for an element or a quoted attribute.
 pub(super) fn text(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in visible(raw).chars() {
@@ -46,7 +46,7 @@ pub(super) fn formula(line: &str) -> String {
     ["cm", "a", "b", "i"].into_iter().fold(text(line), set)
 }
 
-/// Writes JSON as it may stand in a data block: nothing in it ends the element.
+/// Writes JSON for a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
@@ -71,8 +71,8 @@ pub(super) fn number(value: f64) -> String {
     text(&general(value))
 }
 
-/// Returns two numbers as markup; the digits of the second that are not those of the first are marked. Of numbers that
-/// count as the same no digits are shown that only rounding has made.
+/// Returns two numbers as markup; digits of the second that differ from the first are marked. Numbers that count as
+/// equal are shown without the digits that only rounding has made.
 pub(super) fn compared(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
         return (number(expected), number(actual));

@@ -1,8 +1,8 @@
 //! Reports as one HTML file: the essentials as text and SVG, the motion viewer on top.
 //!
-//! The file asks for nothing else: no network, no second file. Its policy allows the one script and the one style sheet
-//! by their digests, and nothing that is evaluated; whatever a submission, a scene or a path says is text (`markup`).
-//! Without script everything but the viewer is there, and prints.
+//! The file loads nothing else, from no network and no second file. Its policy allows the one script and the one style
+//! sheet by their digests, and no evaluated code. All words of a submission, a scene or a path are text (`markup`).
+//! Without script only the viewer is missing, and the page can be printed.
 
 mod call;
 mod card;
@@ -64,14 +64,14 @@ pub struct Case<'a> {
     pub evidence: Option<&'a Evidence>,
     /// The proof of the first explanation.
     pub what_if: Option<&'a WhatIf>,
-    /// How much is told. What is not is not in the file at all.
+    /// The hints of the page. Hidden parts are not in the file at all.
     pub hints: Hints,
     /// Whether the reader of the page has the trace, so that commands may name it.
     pub has_trace: bool,
 }
 
 /// Returns the viewer's script without what only its authors need: indentation and lines that are comments. No text in
-/// it goes over several lines.
+/// it spans several lines.
 fn script() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         let lines = VIEWER.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
@@ -80,7 +80,7 @@ fn script() -> &'static str {
     &SCRIPT
 }
 
-/// Returns the style sheet of all pages, for a page that looks like them.
+/// Returns the style sheet of all pages, for a page of the same design.
 #[must_use]
 pub fn style() -> String {
     format!("{}{STYLE}", fosssim_render::plot::STYLE)

@@ -14,16 +14,16 @@ pub const EXACT: usize = 540_000;
 /// More raw bytes than this are not even tried.
 const TRIED: usize = 12 * EXACT;
 
-/// The number of exact numbers in a rounded motion: those around steps that are looked at closely.
+/// The number of exact numbers in a rounded motion: those around steps with details.
 const KEPT: usize = 16_000;
 
-/// A unit is this part of what the bodies cross.
+/// The unit of rounded positions, as a part of the bodies' extent.
 const PARTS: f64 = 65536.0;
 
 /// The mark of a value that has no number of units, or is no number.
 const BEYOND: i64 = 1 << 40;
 
-/// How motions are kept.
+/// The precision with which motions are kept.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
     /// Exactly where there is room.
@@ -32,7 +32,7 @@ pub(super) enum Precision {
     Rounded,
 }
 
-/// How motions were rounded.
+/// The rounding of motions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounding {
     /// The unit of positions.
@@ -87,7 +87,7 @@ fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     (extent / PARTS).log2().floor().exp2()
 }
 
-/// Returns the records around the steps that are looked at closely, those of the first wrong ones before others.
+/// Returns the records around steps with details, the first wrong steps before others.
 fn exact(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
     let room = KEPT / (4 * layout.particles).max(1);
@@ -150,7 +150,7 @@ mod tests {
         )
     }
 
-    /// A course's scenes are exact; what would take more room than the budget is rounded.
+    /// A course's scenes are exact; scenes that would take more than the budget are rounded.
     #[test]
     fn motions_are_exact_within_the_budget() {
         let small = evidence(11, 400, |k| (k as f64).sin());

@@ -98,8 +98,8 @@ mod tests {
         (rooms, says)
     }
 
-    /// Where exact motions have no room together, the last ones are rounded; where not even these have, the page says
-    /// so.
+    /// Tests that the last motions are rounded if exact ones do not fit on the page together; if even rounded ones do
+    /// not fit, the page says so.
     #[test]
     fn motions_are_rounded_before_they_are_left_out() {
         let (all, says) = rooms(&vec![card(50_000, 500_000, 50_000); 3]);

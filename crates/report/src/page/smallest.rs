@@ -4,7 +4,7 @@ use crate::{smallest::title, words::first_divergence};
 use fosssim_findings::smallest::SmallestScene;
 use std::fmt::Write;
 
-/// Renders one, the `number`-th of its page, with its card where one was drawn.
+/// Renders a smallest scene, the `number`-th of its page, with its card if there is one.
 pub(super) fn article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
     let key = format!("small-{number}");
     let mut out = format!(
@@ -31,7 +31,7 @@ pub(super) fn article(small: &SmallestScene, card: Option<&Card>, number: usize)
     out + "</article>\n"
 }
 
-/// Renders what is written as for a terminal.
+/// Renders text as a terminal shows it.
 pub(super) fn pre(label: &str, words: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", text(words.trim_end()))
 }

@@ -1,4 +1,4 @@
-//! All steps in a row: right, wrong by itself, wrong as a consequence. Heights tell them apart without color.
+//! All steps in a row: right, wrong by itself, wrong as a consequence. Heights distinguish them without color.
 use fosssim_evidence::{Step, StepClass};
 use std::fmt::Write;
 

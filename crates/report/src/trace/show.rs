@@ -34,12 +34,12 @@ pub struct ShownStep<'a> {
     pub steps: u32,
     /// The step's records.
     pub records: &'a [ShownRecord],
-    /// Where the reference's polynomials of the step come from.
+    /// The origins of the reference's polynomials of the step.
     pub labels: &'a [Label],
 }
 
 impl ShownStep<'_> {
-    /// Renders the step for people: both records, the end record alone when the mid record says the same.
+    /// Renders the step for people: both records, only the end record if the mid record is equal.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let heading = match self.step {

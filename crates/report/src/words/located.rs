@@ -1,7 +1,7 @@
 //! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
 use fosssim_findings::located::{Content, LocatedFailure};
 
-/// The greatest number of other contents named that the scenes can't tell from the first one.
+/// The greatest number of other contents that are named if the scenes can't distinguish them from the first one.
 const NAMED: usize = 2;
 
 /// Returns the contents that they have in common, with counts, and where the first of them ends.

@@ -15,7 +15,7 @@ use crate::{
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct AttackNeed {
     pub(super) name: &'static str,
-    /// The walls that meet it, one of them for all.
+    /// The walls that stop it, any of which suffices.
     walls: &'static [Layer],
     /// Whether the processor meets it.
     by_processor: bool,
@@ -57,7 +57,7 @@ impl ExpectedEnd {
         let detail = match ended {
             RunEnd::Exited(code) => code.to_string(),
             RunEnd::Signalled(signal) => signal.to_string(),
-            // The call's name comes first; where calls cannot be named, any violation will do.
+            // The call's name comes first; if calls cannot be named, any violation is accepted.
             RunEnd::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
             RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
             _ => String::new(),

@@ -23,7 +23,7 @@ pub(super) struct Decoy {
     victim: Child,
 }
 
-/// The state of the decoys: for every path its facts and contents.
+/// The state of the decoys: facts and contents for every path.
 pub(super) struct State(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
 
 type DecoyFacts = [i64; 7];
@@ -70,7 +70,7 @@ impl Decoy {
         Ok(Self { root: root.into(), work, scene, secret: secret.to_string(), victim })
     }
 
-    /// Copies the program beside the decoys.
+    /// Copies the program to the decoys.
     pub(super) fn bring(&self, program: &Path) -> io::Result<PathBuf> {
         let own = self.root.join("program");
         std::fs::copy(program, &own)?;

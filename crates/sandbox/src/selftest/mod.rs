@@ -1,9 +1,9 @@
 //! Runs the attack suite on this machine: one hostile program for every promise that the sandbox makes.
 //!
-//! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox beside a
+//! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox next to a
 //! decoy: secrets, a scene, another submission and a process that a hostile program would like to reach. A promise
 //! holds when the program ended as expected, the decoys are exactly as before, nothing secret was printed, and no
-//! process is left. Outside the sandbox the programs refuse to do anything.
+//! process is left. Outside the sandbox the programs do nothing.
 
 mod attack;
 mod decoy;
@@ -35,14 +35,14 @@ use super::{
 
 static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
 
-/// The environment variable without which the hostile programs refuse to start.
+/// The environment variable without which the hostile programs do not start.
 const PERMIT: &str = "FOSSSIM_ATTACK";
-/// Tells a hostile program where the grader's own program lies, and in which group the grader is.
+/// The variables that show a hostile program the place of the grader's own program, and the grader's group.
 const GRADER: &str = "FOSSSIM_GRADER";
 const GROUP: &str = "FOSSSIM_GRADER_GROUP";
-/// How an attack ends whose forbidden call was refused, and not by the sandbox, which would have ended it.
+/// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have ended it.
 const REFUSED: RunEnd = RunEnd::Exited(77);
-/// Attacks are built without optimization, which would take useless-looking stores and loops away.
+/// Attacks are built without optimization, which would remove stores and loops that look useless.
 const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
 /// The trace's file.
 const TRACE: &str = "trace.bin";
@@ -54,16 +54,16 @@ const LONGEST_TRACE: u64 = 1 << 20;
 pub enum PromiseState {
     /// The attack failed and left no mark.
     Held,
-    /// The sandbox did not; the text says how.
+    /// The sandbox broke the promise; the text describes how.
     Broken(String),
-    /// The promise could not be tried here; the text says why.
+    /// The promise could not be tried here; the text gives the reason.
     NotTested(String),
 }
 
 /// One line of the promise table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Promise {
-    /// The attack's name, that of its file.
+    /// The attack's name, which is its file's.
     pub attack: String,
     /// The promise, one sentence.
     pub promise: String,
@@ -84,15 +84,16 @@ impl PromiseTable {
         self.promises.iter().filter(|promise| matches!(promise.state, PromiseState::Broken(_)))
     }
 
-    /// Returns how many promises hold.
+    /// Returns the number of promises that hold.
     #[must_use]
     pub fn held(&self) -> usize {
         self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
     }
 }
 
-/// Builds every attack with the C compiler `cc` and runs it with `backend`, several at a time. `report` is told of each
-/// as it ends. Everything is written beneath `folder`, which must exist; built programs stay there for the next time.
+/// Builds every attack with the C compiler `cc` and runs it with `backend`, several at a time. `report` is called for
+/// each as it ends. Everything is written beneath `folder`, which must exist; built programs stay there for the next
+/// time.
 ///
 /// # Errors
 ///
@@ -186,7 +187,7 @@ impl Place<'_> {
         let fault = |error: &dyn std::fmt::Display| PromiseState::NotTested(format!("the test itself failed: {error}"));
         let mut decoy =
             Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
-        // A program of its own for every run, so that survivors are known by it.
+        // A program of its own for every run, so that survivors are recognized by it.
         let program = decoy.bring(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
@@ -199,7 +200,7 @@ impl Place<'_> {
             .limits(limits(attack));
         let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
         if attack.expects_exit() && running.is_in_memory() {
-            // Such runs have a supervisor in common: what this one leaves in it is there for the next.
+            // Such runs share a supervisor: what this one leaves in it exists for the next.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
@@ -214,7 +215,8 @@ impl Place<'_> {
         if let Some(left) = survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
         }
-        // In a container, the engine's own filter may be first to refuse a forbidden call, and then nobody is told.
+        // In a container, the engine's own filter may be the first to deny a forbidden call, and then no call is
+        // reported.
         let refused = outcome.ended == REFUSED && attack.expects_violation() && is_filtered();
         if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
@@ -252,7 +254,7 @@ impl Place<'_> {
         let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
         put(&path, source.contents()).map_err(said)?;
-        // Built under another name, so that a half-built program is never taken for a whole one.
+        // Built under another name, so that a half-built program is never taken for a complete one.
         let fresh = self.programs.join(format!("{}-{}", attack.name, unique()));
         let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
@@ -264,7 +266,7 @@ impl Place<'_> {
     }
 }
 
-/// Returns a suffix that nobody else uses: other self-tests may work in the same folder at the same time.
+/// Returns a unique suffix: other self-tests may work in the same folder at the same time.
 fn unique() -> String {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     format!("{}.{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
@@ -277,7 +279,7 @@ fn put(path: &Path, contents: &[u8]) -> std::io::Result<()> {
     std::fs::rename(&fresh, path)
 }
 
-/// Returns small limits, so that the suite is short and harms nobody even where a wall is missing.
+/// Returns small limits, so that the suite is short and harmless even if a wall is missing.
 fn limits(attack: &Attack) -> Limits {
     Limits {
         cpu: Duration::from_millis(300),
@@ -298,7 +300,7 @@ fn environment() -> [(&'static str, String); 3] {
     [(PERMIT, "1".into()), (GRADER, grader.display().to_string()), (GROUP, sys::group().to_string())]
 }
 
-/// Returns whether a system call filter lies around this very process: a container's.
+/// Returns whether a system call filter surrounds this very process: a container's.
 fn is_filtered() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     status.lines().any(|line| line.strip_prefix("Seccomp:").is_some_and(|mode| mode.trim() == "2"))

@@ -1,5 +1,5 @@
-//! Calls that the supervisor answers in the kernel's place, because the kernel's own answer would tell of other runs,
-//! or let them have a hand in it.
+//! Calls that the supervisor answers in the kernel's place, because the kernel's own answer would reveal other runs, or
+//! let them interfere.
 
 use std::{
     fs::File,
@@ -20,8 +20,8 @@ fn open_memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
 }
 
-/// Tells the thread how much memory the machine has and how long it has been up, and nothing of what is in use: the C
-/// library sorts long arrays by it.
+/// Reports to the thread the machine's memory and its time since the start, but not the memory in use: the C library
+/// sorts long arrays by it.
 pub(super) fn about_machine(announced: &PendingCall, user: Option<u32>) -> CallAnswer {
     match open_memory(announced, user) {
         Err(_) => CallAnswer::GoOn,
@@ -35,8 +35,9 @@ pub(super) fn about_machine(announced: &PendingCall, user: Option<u32>) -> CallA
 /// Threads that wait for a word that other processes might share, as the C library waits for the end of a thread.
 ///
 /// The kernel finds such words by the file in whose pages they are, and wakes the threads that wait there when a thread
-/// ends that names the same word: in a library's pages that would be another run's. So nobody waits in the kernel. The
-/// supervisor looks at the word after pauses that double, until it has changed or the limit of time has passed.
+/// ends that names the same word: in a library's pages that would be another run's. Therefore no thread waits in the
+/// kernel. The supervisor checks the word after pauses that double, until it has changed or the limit of time has
+/// passed.
 #[derive(Debug, Default)]
 pub(super) struct SharedWaits(Vec<SharedWait>);
 
@@ -45,11 +46,11 @@ struct SharedWait {
     id: u64,
     memory: File,
     word: u64,
-    /// The word's value as long as the wait goes on.
+    /// The word's value as long as the wait continues.
     value: u32,
     limit: Option<Instant>,
     pause: Duration,
-    /// The time of the next look.
+    /// The time of the next check.
     due: Instant,
 }
 
@@ -57,7 +58,7 @@ impl SharedWaits {
     const SHORTEST: Duration = Duration::from_micros(50);
     const LONGEST: Duration = Duration::from_millis(2);
 
-    /// Has the thread wait; an answer that needs no wait comes back.
+    /// Adds a waiting thread; returns the answer if no wait is needed.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
         let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::GoOn) };
         let [word, _, value, ..] = announced.arguments;
@@ -77,12 +78,12 @@ impl SharedWaits {
         }
     }
 
-    /// Returns the time of the next look at a word.
+    /// Returns the time of the next check of a word.
     pub(super) fn next(&self) -> Option<Instant> {
         self.0.iter().map(|wait| wait.due).min()
     }
 
-    /// Answers those whose word has changed or whose time is over.
+    /// Answers threads whose word has changed or whose time is over.
     pub(super) fn answer(&mut self, listener: BorrowedFd<'_>, now: Instant) {
         self.0.retain_mut(|wait| {
             if wait.due > now {
@@ -94,7 +95,7 @@ impl SharedWaits {
                 // A signal may have ended the wait.
                 None => sys::is_waiting(listener, wait.id),
                 Some(answer) => {
-                    // A thread that is gone needs no answer.
+                    // A thread that has ended needs no answer.
                     let _ = sys::answer(listener, wait.id, answer);
                     false
                 }

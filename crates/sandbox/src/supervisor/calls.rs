@@ -1,9 +1,8 @@
 //! The system calls by name, in the groups that the filter treats alike.
 //!
-//! A call in none of the groups does not exist for the program (`ENOSYS`), which is what every new call looks like to
-//! programs that can do without it. A real submission of the course uses 21 calls. POSIX timers (`timer_create`) are in
-//! none, because all programs of a user share their number; `setitimer`, `alarm` and `timerfd_create` take nothing from
-//! others.
+//! A call in none of the groups does not exist for the program (`ENOSYS`); programs treat it like a call that is newer
+//! than the kernel. A real submission of the course uses 21 calls. POSIX timers (`timer_create`) are in none, because
+//! all programs of a user share their number; `setitimer`, `alarm` and `timerfd_create` take nothing from others.
 
 /// A call's name and number.
 pub(super) type Call = (&'static str, i64);
@@ -63,9 +62,9 @@ pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
 /// The calls under older names, which never take an open file.
 pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
-/// Calls that libraries try and can do without; refused with `EPERM` or `EACCES` rather than taken for an attack. The C
-/// library asks the name service by a socket, for one. Counters of free blocks are among them, which tell what others
-/// wrote.
+/// Calls that libraries try and can do without. They are denied with `EPERM` or `EACCES` rather than taken for an
+/// attack. The C library connects to the name service by a socket, for example. Counters of free blocks are among them,
+/// because they reveal what others wrote.
 pub(super) const REFUSED: &[Call] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr SYS_removexattr
     SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
@@ -77,7 +76,7 @@ pub(super) const REFUSED: &[Call] = calls![
     SYS_chown SYS_lchown
 ];
 
-/// The kernel's dangerous corners. No submission comes here by accident: the program is stopped and the call named.
+/// Dangerous calls of the kernel. No submission makes them by accident: the program is stopped and the call named.
 pub(super) const FORBIDDEN: &[Call] = calls![
     SYS_ptrace SYS_process_vm_readv SYS_process_vm_writev SYS_kcmp SYS_pidfd_getfd SYS_unshare SYS_setns SYS_mount
     SYS_umount2 SYS_pivot_root SYS_chroot SYS_open_tree SYS_move_mount SYS_fsopen SYS_fsconfig SYS_fsmount SYS_fspick
@@ -94,8 +93,8 @@ pub(super) const FORBIDDEN: &[Call] = calls![
 /// Locks of whole files. They need no right to write, so that they are for build tools in their own folder only.
 pub(super) const LOCKS: &[Call] = calls![SYS_flock];
 
-/// Becoming another user. The kernel refuses this without privileges, which no program has; `make` sets its own user
-/// again before every command.
+/// Calls to become another user. The kernel denies this without privileges, which no program has; `make` sets its own
+/// user again before every command.
 pub(super) const IDENTITY: &[Call] =
     calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
 

@@ -1,4 +1,4 @@
-//! The child's way from the fork to the program: every wall goes up, in the order in which it still can.
+//! The child's way from the fork to the program: it sets up every wall, in the order in which that is still possible.
 //!
 //! Nothing here returns to the supervisor's code. A step that fails reports to the supervisor through the status
 //! socket, which closes by itself when the program has started.
@@ -26,10 +26,10 @@ use crate::{
     wire::{self, EXECUTE, Failure, RawBytes, RunOrder, stage},
 };
 
-/// Announces that a seccomp listener comes along.
+/// The flag that a seccomp listener follows.
 pub(super) const LISTENER: u8 = b'L';
 
-/// All that the child needs, prepared by the supervisor.
+/// The data that the child needs, prepared by the supervisor.
 pub(super) struct ChildPlan {
     pub(super) order: Rc<RunOrder>,
     pub(super) supervisor: u32,
@@ -39,9 +39,9 @@ pub(super) struct ChildPlan {
     /// The program to execute, open under a number beyond the limit of descriptors, where execution is not announced.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
-    /// The filters, as far as they are compiled.
+    /// The filters, if they are compiled.
     pub(super) filters: Option<Filters>,
-    /// The signals that are ignored and shall not be.
+    /// Signals that are ignored and must not be.
     pub(super) ignored: Rc<[i32]>,
     /// The ways into the run's control group.
     pub(super) groups: Vec<File>,
@@ -63,7 +63,7 @@ pub(super) fn become_program(mut plan: ChildPlan) -> ! {
         Err(failure) => failure,
         Ok((arguments, environment)) => Failure::new(EXECUTE, &execute(&plan, &arguments, &environment)),
     };
-    // The supervisor waits for this message or for the end of the program; without readers there is nobody to tell.
+    // The supervisor waits for this message or for the end of the program; without readers it has no receiver.
     let _ = serde_json::to_writer(&mut status, &failure).map(|()| status.flush());
     sys::exit_now(125)
 }
@@ -81,7 +81,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::set_file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
     if plan.order.walls.namespaces && !plan.order.tools {
-        // The current folder comes along.
+        // The current folder moves, too.
         view::leave_processes(&plan.order)?;
     }
     // To be the first that the kernel ends when memory runs out. Some containers forbid it.
@@ -90,7 +90,8 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     if let Some(user) = plan.user {
         sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
     }
-    // Changing the user forgets the wish to die, so that it comes after; a parent that died before it is noticed here.
+    // Changing the user resets the parent-death signal, so it is set afterwards; a parent that died before is noticed
+    // here.
     sys::die_with_parent().map_err(stage("bind the program's life to the supervisor's"))?;
     if std::os::unix::process::parent_id() != plan.supervisor {
         sys::exit_now(125);
@@ -132,7 +133,7 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The run's own user has no other processes but in another container that hands out the same numbers.
     const SPARE_FOR_OTHERS: u64 = 128;
     const PENDING_SIGNALS: u64 = 1024;
-    // The address sanitizer reserves 20 TiB and what the program itself needs, others more.
+    // The address sanitizer reserves 20 TiB in addition to the program's own space, others more.
     const SANITIZERS_SPACE: u64 = 64 << 40;
     // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
     sys::limit(Resource::Core, 1)?;
@@ -145,7 +146,7 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::limit(Resource::Memlock, 64 << 10)?;
     sys::limit(Resource::Msgqueue, 0)?;
     sys::limit(Resource::Rtprio, 0)?;
-    // The count is per user, like that of processes.
+    // The count is per user, like the count of processes.
     sys::limit(Resource::Sigpending, PENDING_SIGNALS)?;
     // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
@@ -171,7 +172,7 @@ pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, n
     Purpose {
         tools: order.tools,
         announce: walls.notify,
-        // Tools signal their own children, which Landlock's scope or the own user tell from others.
+        // Tools signal their own children, which Landlock's scope or the own user distinguish from others.
         own_process: (!order.tools || !(walls.scopes || walls.own_user)).then_some(number),
         entrance,
         own_user,
@@ -248,10 +249,10 @@ fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     (!readable).then_some(opened)
 }
 
-/// Returns the few variables that every program gets, then those of the job.
+/// Returns the few variables that every program gets, then the job's.
 fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
-    // A folder whose parents are closed to the sandbox's user is reached from within, as the current one.
+    // A folder whose parents are closed to the sandbox's user is reached as the current folder.
     let home =
         if sys::accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) { order.folder.clone() } else { b".".to_vec() };
     let mut variables: Vec<(RawBytes, RawBytes)> = vec![
@@ -283,8 +284,8 @@ pub(super) struct OpenedFile {
 
 impl OpenedFile {
     /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or
-    /// nothing may be executed where it lies. A program that its user may not read would be closed to the supervisor's
-    /// looks as well. A copy that takes more than `most` bytes of memory is refused as the kernel refuses memory.
+    /// nothing may be executed in its folder. A program that its user may not read would be closed to the supervisor's
+    /// checks as well. A copy that takes more than `most` bytes of memory fails as if the kernel had no memory.
     pub(super) fn new(path: &Path, for_another: bool, most: u64) -> Result<Self, Failure> {
         let open = || -> io::Result<Self> {
             const READ_AND_EXECUTE: u32 = 0o005;

@@ -1,10 +1,11 @@
-//! The seccomp filters: an allow list, refusals with an error number, and calls that end the program.
+//! The seccomp filters: an allow list, denials with an error number, and calls that end the program.
 //!
 //! Each answer has a filter of its own, which the compiler makes. The strictest answer counts, in the order kill,
 //! error, announce, allow, and of equal ones the last filter's. Forbidden calls are announced to the supervisor, which
 //! names the call and kills; that filter comes first. Where the kernel cannot announce, the call kills by `SIGSYS`. The
-//! list of calls that exist comes last, because it also takes away the calls that install filters. Every filter ends
-//! programs that use another architecture's calls (32-bit `int 0x80`); x32 numbers are on no list and so do not exist.
+//! list of calls that exist comes last, because it also removes the calls that install filters. Every filter ends
+//! programs that use another architecture's calls (32-bit `int 0x80`); x32 numbers are on no list, and therefore do not
+//! exist.
 
 use std::{collections::BTreeMap, io};
 
@@ -31,9 +32,8 @@ pub(super) const NAMESPACE_FLAGS: [u64; 8] = [
     0x80, // CLONE_NEWTIME
 ];
 
-/// Commands for descriptors that concern nobody but their holder. Left out are those that have the kernel signal others
-/// or make them wait (owner, signal, lease, notice), and the size of pipes, which
-/// shrinks when a user has many.
+/// Commands for descriptors that affect only their holder. Left out are those that make the kernel signal others or
+/// make them wait (owner, signal, lease, notice), and the size of pipes, which shrinks when a user has many.
 const HARMLESS_COMMANDS: [u64; 8] = [
     libc::F_DUPFD as u64,
     libc::F_GETFD as u64,
@@ -45,7 +45,7 @@ const HARMLESS_COMMANDS: [u64; 8] = [
     libc::F_GET_SEALS as u64,
 ];
 
-/// Commands that lock parts of files, or ask who does.
+/// Commands that lock parts of files, or find the holder of a lock.
 pub(super) const LOCK_COMMANDS: [u64; 6] = [
     libc::F_GETLK as u64,
     libc::F_SETLK as u64,
@@ -65,10 +65,10 @@ const QUESTIONS: [i64; 6] = [
     libc::SYS_get_robust_list,
 ];
 
-/// Advice about memory that concerns nobody but the caller, by number, because not every C library knows all: usual,
-/// random and sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards.
-/// Left out are those that have pages of files or of memory leave, age, merge or move, which others would notice or no
-/// counter shows.
+/// Advice about memory that affects only the caller, by number, because not every C library knows all: usual, random
+/// and sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards. Left out
+/// is advice that makes pages of files or of memory leave, age, merge or move, which others would notice or no counter
+/// shows.
 const HARMLESS_ADVICE: [u64; 20] = [0, 1, 2, 3, 4, 8, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19, 22, 23, 102, 103];
 
 /// Waits for a word that may be shared, which the C library needs to wait for the end of a thread: with the clocks that
@@ -80,7 +80,7 @@ const SHARED_WAITS: [u64; 4] = [
     (libc::FUTEX_WAIT_BITSET | libc::FUTEX_CLOCK_REALTIME) as u64,
 ];
 
-/// Wakes for such words: the supervisor sees by itself that a word has changed, so that they need wake nobody.
+/// Wakes for such words: the supervisor sees by itself that a word has changed, so that these calls need no effect.
 const SHARED_WAKES: [u64; 2] = [libc::FUTEX_WAKE as u64, libc::FUTEX_WAKE_BITSET as u64];
 
 /// Requests about terminals and descriptors that the C library and compilers make of any file.
@@ -95,7 +95,7 @@ const HARMLESS_REQUESTS: [u64; 8] = [
     0x802c_542a, // TCGETS2, which newer C libraries ask instead
 ];
 
-/// `prctl` options that name a thread, ask, or make the process stricter.
+/// `prctl` options that name a thread, query something, or make the process stricter.
 const HARMLESS_OPTIONS: [i32; 10] = [
     libc::PR_SET_NAME,
     libc::PR_GET_NAME,
@@ -144,7 +144,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     Ok(filters)
 }
 
-/// Returns the refused calls by error number; 0 is for those that succeed without having any effect.
+/// Returns the denied calls by error number; 0 is for calls that succeed without any effect.
 fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
@@ -171,7 +171,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         let named = given(1)?;
         refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
     }
-    // Words in a file's pages are the same words for everybody who maps it: a library's would wake other runs.
+    // Words in a file's pages are the same words for every process that maps it: a library's would wake other runs.
     let private = libc::FUTEX_PRIVATE_FLAG as u64;
     let harmless = if purpose.announce { [&SHARED_WAITS[..], &SHARED_WAKES].concat() } else { SHARED_WAITS.into() };
     let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &harmless));
@@ -182,7 +182,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     refuse(libc::EINVAL, libc::SYS_madvise, vec![all_differ(2, &HARMLESS_ADVICE)?]);
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
     refuse(libc::EINVAL, libc::SYS_prctl, vec![all_differ(0, &HARMLESS_OPTIONS.map(|option| option as u64))?]);
-    // Memory that is shared and in no file, and huge pages, are resident for nobody: no counter would show them.
+    // Shared memory outside of files, and huge pages, are resident for no process: no counter would show them.
     let unseen = (libc::MAP_ANONYMOUS | libc::MAP_SHARED) as u64;
     let huge = libc::MAP_HUGETLB as u64;
     refuse(libc::EPERM, libc::SYS_mmap, vec![masked(3, unseen, unseen)?, masked(3, huge, huge)?]);
@@ -204,7 +204,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     Ok(refusals)
 }
 
-/// Refusals of calls that name a process, unless it is the caller: error number, call, rules.
+/// Returns denials of calls that name a process, unless it is the caller: error number, call, rules.
 fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
     let own = purpose.own_process.map(|pid| pid as u64);
     let mut refusals = vec![
@@ -237,8 +237,8 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     if !purpose.tools {
         rules.extend(always(calls::FORKING));
         clone.push(masked(0, libc::CLONE_THREAD as u64, 0)?);
-        // The supervisor lets the first one through, which starts the program itself. Where it hears nothing, only the
-        // one by that descriptor gets past the filter.
+        // The supervisor lets the first execution through, which starts the program itself. Without a listener, only
+        // the execution by that descriptor passes the filter.
         rules.insert(libc::SYS_execve, Vec::new());
         let entrance = purpose.entrance.map(|number| all_differ(0, &[number]));
         rules.insert(libc::SYS_execveat, entrance.into_iter().collect::<io::Result<_>>()?);
@@ -247,13 +247,13 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     clone.push(masked(0, parted, libc::CLONE_THREAD as u64)?);
     rules.insert(libc::SYS_clone, clone);
     if purpose.announce {
-        // The supervisor answers itself: what the machine has, without what others use of it; and that a thread may
-        // have ended, without a wait that others could end.
+        // The supervisor answers itself: the machine's memory, without the use by others; and that a thread may have
+        // ended, without a wait that others could end.
         rules.insert(libc::SYS_sysinfo, Vec::new());
         rules.insert(libc::SYS_futex, each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {
-        // The supervisor looks where the file lies.
+        // The supervisor checks the place of the file.
         rules.extend(always(calls::LOCKS));
         rules.insert(libc::SYS_fcntl, each(1, &LOCK_COMMANDS)?);
     }
@@ -285,7 +285,7 @@ fn differ(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result<Secco
     values.iter().map(move |value| condition(argument, SeccompCmpOp::Ne, *value))
 }
 
-/// Rules that match when the argument is one of the values.
+/// Returns rules that match if the argument is one of the values.
 fn each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
     values.iter().map(|value| rule(vec![condition(argument, SeccompCmpOp::Eq, *value)?])).collect()
 }
@@ -305,7 +305,7 @@ fn rule(conditions: Vec<SeccompCondition>) -> io::Result<SeccompRule> {
     SeccompRule::new(conditions).map_err(io::Error::other)
 }
 
-/// Compares the low 32 bits: these arguments are `int`s, and the kernel ignores what lies above.
+/// Compares the low 32 bits: these arguments are `int`s, and the kernel ignores the higher bits.
 fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<SeccompCondition> {
     let value = value & u64::from(u32::MAX);
     SeccompCondition::new(argument, SeccompCmpArgLen::Dword, operator, value).map_err(io::Error::other)

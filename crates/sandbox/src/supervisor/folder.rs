@@ -1,7 +1,7 @@
-//! The working folder as the supervisor sees it: how much is in it, and whose it is.
+//! The working folder as the supervisor sees it: its size and its owner.
 //!
-//! The program changes the folder while we look. Folders are therefore opened by descriptor, without following links,
-//! and nothing here fails because an entry has gone meanwhile.
+//! The program changes the folder while the supervisor reads it. Folders are therefore opened by descriptor, without
+//! following links, and an entry that is removed meanwhile is no error.
 
 use std::{
     ffi::CString,
@@ -34,7 +34,7 @@ pub(super) struct FolderUsage {
     pub(super) bytes: u64,
     /// Files and folders.
     pub(super) files: u64,
-    /// Folders among them, as far as they were looked for.
+    /// Folders among them, if they were counted.
     pub(super) folders: u64,
     /// Whether part of it could not be counted: too deep, closed to us, or beyond the limits.
     pub(super) over: bool,
@@ -73,7 +73,7 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
     contents
 }
 
-/// Gives the folder and all in it to a user and group: folders, and files that have no second name (which might lie
+/// Gives the folder and all in it to a user and group: folders, and files that have no second name (which might be
 /// elsewhere). Only called while no process of the program is alive.
 pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     walk(folder, 0, &mut |path, metadata| {
@@ -87,9 +87,9 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
     sys::change_owner(folder, user, group)
 }
 
-/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth: what lies
-/// deeper than [`DEEPEST`] is moved up into `folder` itself, because the process that removes it later would run out of
-/// descriptors. The answer is whether nothing lay so deep. Only called while no process of the program is alive.
+/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth: entries deeper
+/// than [`DEEPEST`] are moved up into `folder` itself, because the process that removes it later would run out of
+/// descriptors. Returns whether no entry was that deep. Only called while no process of the program is alive.
 pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();
     open_level(folder, folder, 0, &mut moved);
@@ -141,8 +141,8 @@ fn inside(folder: BorrowedFd<'_>) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
 }
 
-/// Visits everything beneath the folder until the visitor says stop. The answer is whether everything was visited.
-/// Paths lead through `/proc/self/fd` and stay valid as long as the visit.
+/// Visits everything beneath the folder until the visitor stops it. Returns whether everything was visited. Paths lead
+/// through `/proc/self/fd` and stay valid as long as the visit.
 fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metadata) -> bool) -> bool {
     let Ok(entries) = std::fs::read_dir(format!("/proc/self/fd/{}", folder.as_raw_fd())) else { return false };
     for entry in entries {

@@ -1,11 +1,11 @@
-//! A control group of its own for one run, where the grader may make one.
+//! A control group of its own for one run, if the grader may make one.
 //!
-//! The kernel then counts memory and threads without gaps between two looks, ends a run that takes too much, and ends
-//! everybody in it at one word. Only what is ours already is used: a group beneath the one that this process is in, or
-//! beneath one of that group's parents; no controller is switched on and nobody else is moved. What the supervisor
-//! counts by itself stays the rule, so that a verdict does not depend on the groups of a host.
+//! The kernel then counts memory and threads without gaps between two checks, ends a run that takes too much, and ends
+//! all processes in it with one command. Only what is ours already is used: a group beneath the one that this process
+//! is in, or beneath one of that group's parents; no controller is switched on and no other process is moved. The
+//! supervisor's own counts stay decisive, so that a verdict does not depend on the groups of a host.
 //!
-//! Version 2 comes first. Where it has no controller for memory, version 1 limits memory, but cannot end a run.
+//! Version 2 comes first. If it has no controller for memory, version 1 limits memory, but cannot end a run.
 
 use std::{
     ffi::CStr,
@@ -21,7 +21,7 @@ use crate::{
     wire::RunOrder,
 };
 
-/// How the names of our groups begin.
+/// The beginning of our groups' names.
 const PREFIX: &str = "fosssim-oracle-";
 /// Pipe buffers, page tables and the kernel's other books count as well.
 const SPARE_MEMORY: u64 = 64 << 20;
@@ -30,13 +30,13 @@ const SPARE_PROCESSES: u32 = 16;
 /// The purpose of a hierarchy of groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// The one of version 2.
+    /// A group of version 2.
     Unified,
     /// The memory of version 1.
     Memory,
 }
 
-/// A group. It is removed when this is dropped in sight of the host's files, once nobody is in it.
+/// A group. Dropped where the host's files are visible, it is removed once no process is in it.
 pub(super) struct Group {
     parts: Vec<Part>,
 }
@@ -93,17 +93,17 @@ impl Group {
         self.parts.iter().map(Part::entrance).collect()
     }
 
-    /// Returns whether everybody in it can be ended at one word.
+    /// Returns whether all processes in it can be ended with one command.
     pub(super) fn can_kill(&self) -> bool {
         self.unified().is_some()
     }
 
-    /// Ends everybody in the group, where that can be.
+    /// Ends all processes in the group, if that is possible.
     pub(super) fn kill(&self) -> io::Result<()> {
         self.unified().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
     }
 
-    /// Returns whether the kernel ended somebody because the group had no memory left.
+    /// Returns whether the kernel ended a process because the group had no memory left.
     pub(super) fn was_out_of_memory(&self) -> bool {
         self.parts.iter().any(|part| {
             let file = if part.kind == Kind::Memory { c"memory.oom_control" } else { c"memory.events" };
@@ -111,7 +111,7 @@ impl Group {
         })
     }
 
-    /// Returns the processor time of everybody who is or was in the group.
+    /// Returns the processor time of all processes that are or were in the group.
     pub(super) fn cpu(&self) -> Duration {
         Duration::from_micros(self.unified().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
     }
@@ -121,8 +121,8 @@ impl Group {
     }
 
     fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
-        // Files count here, the working folder's above all, and so do buffers of others, but not for the program's own
-        // limit.
+        // Files count here, above all the working folder's, and so do buffers of others; they do not count for the
+        // program's own limit.
         let limits = &order.limits;
         let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY);
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);
@@ -142,7 +142,7 @@ impl Group {
             for (file, value) in values {
                 match part.open(file, OFlags::WRONLY) {
                     Ok(mut file) => file.write_all(value.as_bytes())?,
-                    // The controller is not there; `controls` says so.
+                    // The controller is missing; `controls` shows it.
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                     Err(error) => return Err(error),
                 }
@@ -249,11 +249,11 @@ fn value_of(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
 
-/// Makes a folder and locks it, so that nobody who cleans up takes it away.
+/// Makes a folder and locks it, so that no cleanup removes it.
 ///
 /// # Errors
 ///
-/// `NotFound` when it was taken away before it was locked.
+/// `NotFound` when it was removed before it was locked.
 fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
     // In process namespaces, others may have our number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
@@ -272,7 +272,7 @@ fn sweep(place: &Path) {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
         let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         if folder.try_lock().is_ok() {
-            // One with somebody in it stays.
+            // A group with a process in it stays.
             let _ = std::fs::remove_dir(entry.path());
         }
     }
@@ -285,7 +285,7 @@ pub(crate) fn memory_groups() -> Vec<PathBuf> {
     [Kind::Unified, Kind::Memory].into_iter().flat_map(|kind| places_in(&mounts, &groups, kind)).collect()
 }
 
-/// Returns where a group might be made: in our own group, then in its parents up to the root of what is mounted here.
+/// Returns the places for a group: in our own group, then in its parents up to the mounted root.
 fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
     let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {
@@ -306,7 +306,7 @@ fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
     });
     let Some((root, top)) = mounted else { return Vec::new() };
     let top = Path::new(top);
-    // A group outside what is mounted cannot be named here.
+    // A group outside the mounted part cannot be named here.
     let Ok(inside) = Path::new(own).strip_prefix(root) else { return vec![top.into()] };
     inside.ancestors().map(|part| if part.as_os_str().is_empty() { top.into() } else { top.join(part) }).collect()
 }

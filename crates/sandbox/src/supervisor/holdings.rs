@@ -1,5 +1,5 @@
 //! Holdings of processes that neither their folder nor their resident memory shows: files without a name that are open,
-//! mapped or executed, and memory behind mappings that is resident for nobody.
+//! mapped or executed, and memory behind mappings that is resident for no process.
 
 use std::{
     collections::BTreeSet,
@@ -11,7 +11,7 @@ use std::{
 use super::folder::BLOCK;
 use crate::machine;
 
-/// How the kernel marks the name of a file that has none any more.
+/// The mark of the kernel for a file that has no name any more.
 const GONE: &[u8] = b" (deleted)";
 /// The names of shared memory that is in no folder.
 const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
@@ -21,13 +21,13 @@ const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
 pub(super) struct Holdings {
     /// Bytes of files without a name.
     pub(super) nameless: u64,
-    /// Bytes of memory that need not be resident for anybody.
+    /// Bytes of memory that need not be resident for any process.
     pub(super) memory: u64,
 }
 
 /// Returns the memory and files of these processes (each with one of its threads). `root` is the working folder, the
-/// only place in which they make files. `executed` asks for the files that they run, too, and `page_tables` for the
-/// kernel's books about their memory, which matter where address space is not limited.
+/// only place in which they make files. `executed` adds the files that they run, and `page_tables` the kernel's tables
+/// about their memory, which matter if address space is not limited.
 pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
     let mut holdings = Holdings::default();
     let mut seen = BTreeSet::new();
@@ -54,7 +54,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
         }
     }
     let shown = path_in_maps(root);
-    // How much of a mapped file is on disk, only root may ask: so the mapped size counts in full.
+    // Only root can find how much of a mapped file is on disk, so the mapped size counts in full.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
         let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
@@ -66,7 +66,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
     holdings
 }
 
-/// Returns the path as `maps` shows it: its lines could not be told apart if names held newlines.
+/// Returns the path as `maps` shows it: names with newlines would make its lines ambiguous.
 fn path_in_maps(path: &Path) -> Vec<u8> {
     let lines: Vec<&[u8]> = path.as_os_str().as_bytes().split(|byte| *byte == b'\n').collect();
     lines.join(&b"\\012"[..])
@@ -75,7 +75,7 @@ fn path_in_maps(path: &Path) -> Vec<u8> {
 /// A mapping of a file that has no name any more.
 struct Mapping {
     shared: bool,
-    /// Where in the file it ends.
+    /// The place in the file at which it ends.
     end: u64,
     inode: u64,
     name: Vec<u8>,

@@ -4,9 +4,9 @@
 //! folder with the files that every run may see, the network namespace that has no network, Landlock's places and the
 //! filters. For each run the keeper forks into new namespaces of processes, mounts and messages; that child is the
 //! run's supervisor and the first process of its world, with a copy of the prepared mounts, a working folder in memory
-//! and a `/proc` of its own. All that a run could leave goes away with these; the prepared root it sees read-only, and
-//! no filter lets it make a socket. The next run begins when the kernel has ended the last process of the one before. A
-//! keeper whose run did anything but end by itself serves no other (the grader sees to that).
+//! and a `/proc` of its own. All that a run could leave is removed with these; the prepared root is read-only for it,
+//! and no filter lets it make a socket. The next run begins when the kernel has ended the last process of the one
+//! before. A keeper whose run did not end by itself serves no other (the grader ensures that).
 //!
 //! The guardian outside holds user and control group until the keeper has ended; the keeper dies with it, and every run
 //! with the keeper.
@@ -34,7 +34,7 @@ use crate::{
     wire::{self, Event, Failure, RawBytes, RunOrder, stage},
 };
 
-/// A keeper without orders goes after this time, so that its user is there for others.
+/// A keeper without orders ends after this time, so that its user is free for others.
 const IDLE: Duration = Duration::from_secs(2);
 /// The number of a program in its process namespace, where the supervisor is the first.
 const PROGRAM: i32 = 2;
@@ -53,14 +53,15 @@ pub(super) fn main() -> ExitCode {
         }
         Ok(Side::Keeper(keeper)) => keeper.serve(first, &socket),
         Err(failure) => {
-            // A grader that is gone needs no word.
+            // A grader that has ended needs no message.
             let _ = wire::send(&mut first.answers, &Event::Failed(failure));
             1
         }
     })
 }
 
-/// One run: what to do, the way to and from the grader, the working folder on the disk, and what else shall lie there.
+/// One run: its order, the connection with the grader, the working folder on the disk, and further files for that
+/// folder.
 struct RunRequest {
     order: RunOrder,
     control: File,
@@ -70,7 +71,7 @@ struct RunRequest {
 }
 
 impl RunRequest {
-    /// Returns the next one; `None` when the grader has no more.
+    /// Returns the next request; `None` when the grader has no more.
     fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
         let mut byte = [0];
         let (length, descriptors) = sys::receive_descriptors(socket, &mut byte)?;
@@ -117,7 +118,7 @@ struct Keeper {
 }
 
 impl Keeper {
-    /// Serves one request after the other, until there are no more or one ends otherwise than it should.
+    /// Serves one request after the other, until there are no more or one ends otherwise than expected.
     fn serve(mut self, first: RunRequest, socket: &UnixStream) -> u8 {
         let mut next = Some(first);
         while let Some(request) = next {
@@ -143,7 +144,7 @@ impl Keeper {
             Ok(Fork::Parent(supervisor)) => {
                 drop(request);
                 let code = sys::wait_for(supervisor).unwrap_or(1);
-                // Where it was in sight before, it is not ours to remove.
+                // If it was visible before, it is not ours to remove.
                 let _ = std::fs::remove_dir(folder);
                 code
             }

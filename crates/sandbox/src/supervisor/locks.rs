@@ -1,9 +1,9 @@
 //! Locks of files on behalf of build tools: in the working folder only.
 //!
 //! A lock needs no right to write, so that every program that may read a file of the system could hold it against the
-//! whole machine. Submissions lock nothing. What build tools lock is announced, and goes on when the open file lies
-//! beneath the working folder. (A thread that exchanges the descriptor between look and lock gains a lock that nobody
-//! heeds, for the length of the build.)
+//! whole machine. Submissions lock nothing. Locks of build tools are announced, and allowed if the open file is beneath
+//! the working folder. (A thread that exchanges the descriptor between check and lock gains a lock without effect, for
+//! the length of the build.)
 
 use std::path::Path;
 

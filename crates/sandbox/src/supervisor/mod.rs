@@ -1,7 +1,7 @@
-//! The supervisor: a fresh process of our own binary that runs one program and reports when everything is dead.
+//! The supervisor: a fresh process of our own binary that runs one program and reports when all processes are dead.
 //!
-//! It never reads a scene, a trace or a verdict, and it believes nothing that the program says: only the kernel's
-//! wait status, counters and announcements.
+//! It never reads a scene, a trace or a verdict, and it trusts only the kernel's wait status, counters and
+//! announcements, not the program's output.
 
 mod answers;
 mod calls;
@@ -30,11 +30,11 @@ use std::{ffi::OsString, process::ExitCode};
 pub(super) use self::{folder::open_up, group::memory_groups};
 use super::wire::SUPERVISOR_ARGUMENT;
 
-/// Asks for a run.
+/// The mode for one run.
 pub(super) const MODE_RUN: &str = "run";
-/// Asks for runs of one submission.
+/// The mode for all runs of one submission.
 pub(super) const MODE_KEEP: &str = "keep";
-/// Asks which walls hold.
+/// The mode that reports which walls hold.
 pub(super) const MODE_PROBE: &str = "probe";
 
 /// Turns this process into a supervisor if it was started as one; otherwise `None`.

@@ -1,8 +1,8 @@
 //! Changes permission bits on behalf of build tools that run as the grader's own user.
 //!
 //! Linkers make their output executable by name, but Landlock does not know permission bits: allowed outright, a build
-//! step could open or close the grader's own files. So the call is announced, and the supervisor carries it out
-//! beneath the working folder and refuses it elsewhere. Links are not followed.
+//! step could open or close the grader's own files. The call is therefore announced, and the supervisor carries it out
+//! beneath the working folder and denies it elsewhere. Links are not followed.
 
 use std::{
     ffi::CString,
@@ -53,7 +53,7 @@ pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Pat
         .map_err(|error| error.raw_os_error().unwrap_or(libc::EPERM))
 }
 
-/// Where a relative path starts.
+/// The folder in which a relative path starts.
 enum Start {
     Current,
     Held(u64),

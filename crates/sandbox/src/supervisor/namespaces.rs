@@ -1,9 +1,9 @@
-//! A world of its own for one run: processes, network, messages and mounts.
+//! Namespaces of its own for one run: processes, network, messages and mounts.
 //!
 //! The supervisor itself moves in. It forks once into a new process namespace, where it is process 1: when it dies,
-//! whatever the reason, the kernel ends everything below it at once. What stays outside, the *guardian*, only waits.
-//! Root needs no user namespace; an ordinary user gets one in which it is itself, with rights over nothing but the new
-//! namespaces. These rights end with the execution of the program.
+//! whatever the reason, the kernel ends everything below it immediately. The process that stays outside, the
+//! *guardian*, only waits. Root needs no user namespace; an ordinary user gets one in which it is itself, with rights
+//! over the new namespaces only. These rights end with the execution of the program.
 //!
 //! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and gives each run a process
 //! namespace, mounts and messages of its own within.
@@ -15,7 +15,7 @@ use crate::{
     wire::{Failure, RunOrder, stage},
 };
 
-/// Where a supervisor finds itself after [`enter`].
+/// The process in which [`enter`] returns.
 pub(super) enum Side {
     /// Inside: go on.
     Inside,
@@ -23,11 +23,11 @@ pub(super) enum Side {
     Outside(u8),
 }
 
-/// Moves into namespaces of its own, with nothing in sight but what the order needs.
+/// Moves into namespaces of its own, in which only what the order needs is visible.
 ///
 /// # Errors
 ///
-/// The step that failed. The process is then somewhere between the worlds and must end.
+/// The step that failed. The process is then between the namespaces and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     match leave()? {
         Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),

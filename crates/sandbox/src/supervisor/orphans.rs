@@ -8,10 +8,10 @@ use super::{
 };
 
 /// Ends the processes that a lost supervisor may have left: those of its child's session and those of the child's own
-/// user. A process namespace ends all of its processes by itself, and its sessions are not ours to name.
+/// user. A process namespace ends all of its processes by itself, and its sessions have no numbers here.
 pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
-    // With the supervisor its hold on the user is gone, and another run may have it by now.
+    // The supervisor's lock of the user ended with it, and another run may have the user by now.
     let slot = user.and_then(slot::retake);
     let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..ROUNDS {

@@ -20,7 +20,7 @@ pub(super) struct HeldResources {
 }
 
 impl HeldResources {
-    /// Takes the resources that the order asks for.
+    /// Takes the resources that the order requires.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
@@ -35,7 +35,7 @@ pub(super) struct PreparedRun {
     places: Option<walls::Places>,
     pub(super) filters: Option<child::Filters>,
     ignored: Option<Rc<[i32]>>,
-    /// That the supervisor has one thread.
+    /// The proof that the supervisor has one thread.
     alone: Option<SingleThread>,
 }
 
@@ -66,7 +66,7 @@ impl PreparedRun {
         self.alone.as_ref().map_or_else(sys::fork, sys::fork_alone)
     }
 
-    /// Returns the file rules of an order, if there are to be any.
+    /// Returns the file rules of an order, if it has any.
     pub(super) fn rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
             _ if !order.walls.landlock => Ok(None),

@@ -31,7 +31,7 @@ pub(super) fn main() -> ExitCode {
     match probe().and_then(|probe| wire::send(io::stdout(), &probe)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // For the grader's message. Without a reader there is nobody to tell.
+            // For the grader's message. Without a reader the message has no receiver.
             let _ = writeln!(io::stderr(), "{error}");
             ExitCode::from(1)
         }
@@ -62,7 +62,7 @@ fn probe() -> io::Result<Probe> {
         Fork::Child => {
             drop(parent);
             let tried = try_walls(probe, user);
-            // Written as a file, because the filter knows no socket calls. A parent that is gone needs no answer.
+            // Written as a file, because the filter knows no socket calls. A parent that has ended needs no answer.
             let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
             sys::exit_now(0)
         }
@@ -77,8 +77,8 @@ fn probe() -> io::Result<Probe> {
     }
 }
 
-/// Tries to execute an empty file in the temporary folder: where files may be executed there, the kernel says that it
-/// is no program. Otherwise the same in memory. The answer is why neither works, and whether memory is needed.
+/// Tries to execute an empty file in the temporary folder: if files may be executed there, the kernel answers that it
+/// is no program. Otherwise it tries the same in memory. Returns why neither works, and whether memory is needed.
 fn try_execution() -> (Option<String>, bool) {
     let executable = |error: io::Error| match error.raw_os_error() {
         Some(libc::ENOEXEC) => Ok(()),
@@ -106,7 +106,7 @@ fn try_execution() -> (Option<String>, bool) {
             });
             (why, true)
         }
-        // A grading will tell what is wrong with the folder.
+        // A grading will report what is wrong with the folder.
         Err(error) => (Some(format!("{}: {error}", folder.display())), false),
     }
 }
@@ -119,7 +119,7 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let Fork::Parent(child) = sys::fork()? else {
         let word = entrances.iter_mut().try_for_each(|entrance| entrance.write_all(b"0"));
         let word = word.map_err(|error| error.to_string());
-        // A prober that is gone needs no answer, and one that never kills is our parent, with whom we die.
+        // A prober that has ended needs no answer, and one that never kills is our parent, with which we die.
         let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
         loop {
             std::thread::sleep(Duration::from_secs(1));
@@ -157,13 +157,13 @@ fn try_namespaces() -> Option<String> {
         drop(answer);
         let word = match namespaces::enter(&order) {
             Ok(Side::Inside) => Some(None),
-            // It has told by itself, or died without a word.
+            // It has reported by itself, or died without a report.
             Ok(Side::Outside(_)) => None,
             Err(Failure { stage, errno }) => {
                 Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))
             }
         };
-        // A prober that is gone needs no answer.
+        // A prober that has ended needs no answer.
         let _ = word.map(|word: Option<String>| wire::send(&mut told, &word));
         sys::exit_now(0)
     };
@@ -192,7 +192,7 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
         })
     };
     let install = || -> io::Result<()> {
-        // The announcing filter goes first, as in a real run; the next probe below only adds to it.
+        // The announcing filter is the first, as in a real run; the next probe below only adds to it.
         for program in filters(false)? {
             sys::install_filter(&program, false)?;
         }

@@ -1,4 +1,4 @@
-//! The processes below us as `/proc` tells of them, and how they are ended.
+//! The processes below us, as `/proc` shows them, and their end.
 
 use std::{
     collections::BTreeSet,
@@ -8,7 +8,7 @@ use std::{
 
 use crate::{machine, sys};
 
-/// One line of `/proc/PID/stat`, as far as it matters.
+/// The fields of one line of `/proc/PID/stat` that matter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Stat {
     pid: i32,
@@ -23,7 +23,7 @@ struct Stat {
 
 impl Stat {
     /// Returns whether anything of the process can still run. A process whose main thread has left looks dead (state Z)
-    /// while its other threads go on.
+    /// while its other threads continue.
     fn is_alive(&self) -> bool {
         self.threads > 1 || !matches!(self.state, b'Z' | b'X')
     }
@@ -115,14 +115,14 @@ pub(super) fn threads_of_user(user: u32) -> u64 {
 pub(super) struct LeftProcesses {
     /// Processes.
     pub(super) count: u32,
-    /// Whether the kernel itself holds all of them (state D), which no program can bring about.
+    /// Whether the kernel itself holds all of them (state D), which no program can cause.
     pub(super) held: bool,
 }
 
 /// Ends every descendant and everything that runs as `user`, reaping as it goes. With `alone` this process is the first
-/// of a process namespace in which there is nobody but the run.
+/// of a process namespace with no processes but the run's.
 ///
-/// Everybody is stopped before anybody is killed: a fork bomb would otherwise use each place that becomes free.
+/// All processes are stopped before any is killed: a fork bomb would otherwise use each place that becomes free.
 /// `reaped` is called for every process that was reaped.
 pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::ReapedProcess)) -> LeftProcesses {
     // Only a process that the kernel itself holds (state D) lasts so long.
@@ -130,7 +130,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
     let start = Instant::now();
     loop {
         if alone {
-            // One word ends all, whatever they look like, and where no child is left then, there is nobody.
+            // One command ends all, whatever they look like, and without a child left there is no process.
             if sys::kill_everybody_inside() && reap_all(&mut reaped) {
                 return LeftProcesses::default();
             }
@@ -169,7 +169,7 @@ pub(super) fn find_of_session(session: i32) -> Vec<i32> {
     members.map(|stat| stat.pid).collect()
 }
 
-/// Stops the victims until no new one appears, then kills all of them. The answer is whom it found.
+/// Stops the victims until no new one appears, then kills all of them, and returns them.
 pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
     const ROUNDS: u32 = 100;
     let mut stopped = BTreeSet::new();
@@ -179,7 +179,7 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
             break;
         }
         for pid in fresh {
-            // It may have gone by itself meanwhile; the next round sees.
+            // It may have ended by itself meanwhile; the next round shows that.
             let _ = sys::kill(pid, libc::SIGSTOP);
             stopped.insert(pid);
         }
@@ -197,7 +197,7 @@ fn descendants() -> Vec<Stat> {
     let mut stats: Vec<Stat> = all().filter_map(read).collect();
     let mut family = vec![std::process::id() as i32];
     let mut found = Vec::new();
-    // Parents need not have smaller numbers than their children: repeat until nobody is added.
+    // Parents need not have smaller numbers than their children: repeat until no process is added.
     loop {
         let (mut mine, rest): (Vec<Stat>, Vec<Stat>) = stats.iter().partition(|stat| family.contains(&stat.parent));
         if mine.is_empty() {
@@ -230,8 +230,8 @@ fn read(pid: i32) -> Option<Stat> {
     parse(&std::fs::read(format!("/proc/{pid}/stat")).ok()?)
 }
 
-/// Reads the line. The name in parentheses may hold anything, parentheses and newlines included, so that the fields
-/// count from the last closing one.
+/// Reads the line. The name in parentheses may hold anything, including parentheses and newlines, so that the fields
+/// count from the last closing parenthesis.
 fn parse(line: &[u8]) -> Option<Stat> {
     let end = line.iter().rposition(|&byte| byte == b')')?;
     let pid = std::str::from_utf8(line.split(|&byte| byte == b' ').next()?).ok()?.parse().ok()?;
@@ -273,7 +273,7 @@ mod tests {
         let children: Vec<_> =
             (0..3).map(|_| std::process::Command::new("/bin/sleep").arg("1000").spawn().unwrap()).collect();
         let pids: Vec<i32> = children.iter().map(|child| child.id() as i32).collect();
-        // Each look finds one more, as if it had just been forked.
+        // Each check finds one more, as if it had just been forked.
         let looks = std::cell::Cell::new(0);
         let found = stop_then_kill(|| {
             looks.set((looks.get() + 1).min(pids.len()));

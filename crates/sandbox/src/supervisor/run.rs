@@ -32,7 +32,7 @@ use crate::{
     wire::{self, Event, Failure, Report, RunOrder, stage},
 };
 
-/// How often clocks and counters are looked at. A look costs some ten microseconds.
+/// The time between two checks of clocks and counters. A check costs some ten microseconds.
 const TICK: Duration = Duration::from_millis(10);
 /// Looking at the folder may cost this part of the time at most.
 const FOLDER_SHARE: u32 = 20;
@@ -48,13 +48,13 @@ pub(super) fn main() -> ExitCode {
         .and_then(|order| settle(order, control));
     ExitCode::from(match settled {
         Ok(SettledRun::Here(run)) => tell(run.finish(&mut answers), &mut answers),
-        // The process inside has told everything.
+        // The process inside has reported everything.
         Ok(SettledRun::Elsewhere(code)) => code,
         Err(failure) => tell(Err(failure), &mut answers),
     })
 }
 
-/// Says how it ended. The answer is the supervisor's exit code: 0 when the grader has heard it.
+/// Reports how it ended. Returns the supervisor's exit code: 0 if the grader has received the report.
 pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
     let sent = match finished {
         Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
@@ -75,7 +75,7 @@ enum SettledRun {
 
 /// Finds a user and a world for the run, and starts it there.
 fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
-    // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader tells it to stop.
+    // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader sends it the stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let held = HeldResources::take(&order)?;
     if order.walls.namespaces
@@ -112,7 +112,7 @@ pub(super) struct Run {
     main_status: Option<i32>,
     cause: Option<RunEnd>,
     peak_memory: u64,
-    /// Memory that the last look at mappings found and that is resident for nobody.
+    /// Memory that the last check of mappings found and that is resident for no process.
     unseen_memory: u64,
     orphaned: bool,
 }
@@ -189,10 +189,10 @@ impl Run {
         })
     }
 
-    /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader is gone.
+    /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader has ended.
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.user();
-        // A grader that is gone shows as the end of the control pipe, too.
+        // A grader that has ended shows as the end of the control pipe, too.
         let walls = self.order.walls;
         let session = (!walls.namespaces).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
@@ -203,7 +203,7 @@ impl Run {
             let _ = group.kill();
         }
         if main_status.is_none() {
-            // Its number is its own as long as nobody has reaped it.
+            // Its number is its own until it is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
         let left = processes::end_all(user, walls.namespaces, |process| {
@@ -224,7 +224,7 @@ impl Run {
             }
             false => true,
         };
-        // Files that a submission leaves in memory nobody looks at but root.
+        // Files that a submission leaves in memory are read only by root.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
             folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
         }
@@ -234,7 +234,7 @@ impl Run {
         if self.orphaned {
             return Ok(None);
         }
-        // Most say nothing, and to find no message there costs more than it seems: questions to the processor.
+        // Most print nothing, and finding no message there is expensive: it asks the processor several things.
         let told = Some(&self.told[..]).filter(|told| !told.is_empty());
         let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
         let exec_errno = match failure {
@@ -302,8 +302,8 @@ impl Run {
             match found[4] {
                 Readiness::Idle => {}
                 Readiness::Ready => self.decide_announcement()?,
-                // Nobody is left under the filter: asked again, the kernel would say so at once until the end is
-                // reaped.
+                // No process is left under the filter: the kernel would report that immediately and repeatedly until
+                // the end is reaped.
                 Readiness::HungUp => self.listener = None,
             }
             let now = Instant::now();
@@ -357,7 +357,7 @@ impl Run {
         }
     }
 
-    /// Decides about a forbidden call that waits: either it is the one that starts the program, or the program ends.
+    /// Decides about a forbidden call that waits: either it starts the program, or the program ends.
     fn decide_announcement(&mut self) -> io::Result<()> {
         let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
             return Ok(());
@@ -366,7 +366,7 @@ impl Run {
             Ok(Some(announced)) => announced,
             Ok(None) => return Ok(()),
             Err(_) => {
-                // Nobody is left under the filter.
+                // No process is left under the filter.
                 self.listener = None;
                 return Ok(());
             }
@@ -393,7 +393,7 @@ impl Run {
             _ => None,
         };
         if let Some(answer) = answer {
-            // The caller may have been killed meanwhile; then nobody waits for this answer.
+            // The caller may have been killed meanwhile; then no process waits for this answer.
             let _ = sys::answer(listener.as_fd(), announced.id, answer);
             return Ok(());
         }
@@ -424,7 +424,7 @@ impl Run {
         }
     }
 
-    /// Looks at clocks and counters.
+    /// Checks clocks and counters.
     fn check_limits(&mut self) {
         if self.main_status.is_some() {
             return;
@@ -449,13 +449,13 @@ impl Run {
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
-    /// Returns the group's processor time, where there may be processes that nobody reaps. One process's own count is
-    /// whole, and its group may have served earlier runs.
+    /// Returns the group's processor time, if there may be processes that are not reaped. A single process's own count
+    /// is complete, and its group may have served earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
 
-    /// Looks at the working folder, at removed files that are still in use, and at memory that is resident for nobody.
+    /// Checks the working folder, removed files that are still in use, and memory that is resident for no process.
     fn look_at_folder(&mut self) {
         let mut contents =
             folder::measure(self.folder.as_fd(), self.order.folder_bytes(), self.order.limits.folder_files);
@@ -480,13 +480,13 @@ impl Run {
         self.blame_if(over, RunEnd::FolderLimit);
     }
 
-    /// Returns whether there may be memory that is resident for nobody: files that are neither in the folder nor
-    /// refused by rules.
+    /// Returns whether there may be memory that is resident for no process: files that are neither in the folder nor
+    /// denied by rules.
     fn can_hide_memory(&self) -> bool {
         self.order.tools || self.order.sanitizers || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
-    /// Returns whether there may be other processes than the main one. Without the filter anybody can start some.
+    /// Returns whether there may be other processes than the main one. Without the filter every program can start some.
     fn has_children(&self) -> bool {
         self.order.tools || !self.order.walls.seccomp
     }
@@ -502,7 +502,7 @@ fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
 }
 
-/// Gives the working folder to the run's own user; whose it was.
+/// Gives the working folder to the run's own user, and returns its former owner.
 fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
     folder::give(folder, user, user)?;
@@ -520,7 +520,7 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
     entrance.map(Some).map_err(stage("open the program once more"))
 }
 
-/// Gives the grader the folder.
+/// Sends the grader the folder.
 fn hand_over(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
     sys::send_descriptors(&socket, wire::FOLDER, [folder])

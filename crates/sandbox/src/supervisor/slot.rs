@@ -24,19 +24,19 @@ pub(super) struct Slot {
     _lock: File,
 }
 
-/// How long to wait for an id; no run that keeps its limits lasts so long.
+/// The longest wait for an id; no run that keeps its limits lasts this long.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
-/// Takes the first id that nobody holds and that no process runs under. With all of them taken it waits for one.
+/// Takes the first id that no run holds and under which no process runs. If all of them are taken it waits for one.
 ///
 /// # Errors
 ///
-/// When none becomes free for an hour, the grader has gone meanwhile, or the folder of locks belongs to somebody else.
+/// When none becomes free for an hour, the grader has ended meanwhile, or the folder of locks has another owner.
 pub(super) fn take() -> io::Result<Slot> {
     take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
 }
 
-/// Returns the id of a run that has lost its supervisor. `None` when another run has it by now, which found nobody left
+/// Returns the id of a run that has lost its supervisor. `None` if another run has it by now, which found no process
 /// under it.
 pub(super) fn retake(user: u32) -> Option<Slot> {
     retake_in(&folder().ok()?, user)
@@ -88,7 +88,7 @@ fn folder_in(base: &Path) -> io::Result<PathBuf> {
     if !metadata.is_dir() || metadata.uid() != 0 || metadata.mode() & 0o077 != 0 {
         return Err(io::Error::other(format!("{} must be a folder that only root can enter", folder.display())));
     }
-    // Made by an earlier container, it may lie where nothing can be written any more.
+    // An earlier container may have made it, where nothing can be written any more.
     OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(folder.join("lock"))?;
     Ok(folder)
 }
@@ -111,7 +111,7 @@ mod tests {
     #[test]
     fn with_every_id_taken_a_run_waits_for_one() {
         let folder = tempfile::tempdir().unwrap();
-        // An id that nobody has.
+        // An id that no user has.
         let take = |patience| take_of(folder.path(), 4_000_000_000..4_000_000_001, patience);
         let first = take(Duration::ZERO).unwrap();
         assert!(take(Duration::ZERO).is_err(), "it is held");

@@ -1,8 +1,8 @@
-//! The only files in sight of a run: a root folder of its own with the files of the order, under the usual paths.
+//! The files that a run can see: a root folder of its own with the files of the order, under the usual paths.
 //!
-//! The same places that Landlock allows (see `walls.rs`) appear here, read-only but for the working folder; nothing
-//! else of the host exists, not even by name. There is no writable place in memory (`/tmp`, `/dev/shm`), because what
-//! lies there would count for nobody.
+//! The places that Landlock allows (see `walls.rs`) appear here, read-only except for the working folder; nothing else
+//! of the host exists, not even by name. There is no writable place in memory (`/tmp`, `/dev/shm`), because files there
+//! would count for no process.
 
 use std::{
     collections::VecDeque,
@@ -28,11 +28,11 @@ use crate::{
 const SITE: &str = "/proc";
 /// The old root's name beneath the new one, for as long as it is needed.
 const HOST: &str = "/.host";
-/// Where an ordinary user's prepared root shows processes, so that its copies may.
+/// The place at which an ordinary user's prepared root shows processes, so that its copies may.
 const WITNESS: &str = "/.processes";
 /// As many links as the kernel follows.
 const MOST_LINKS: u32 = 40;
-/// Room for the folders, links and empty files that mounts lie on.
+/// Room for the folders, links and empty files under mounts.
 const ROOM: &str = "mode=755,size=4m,nr_inodes=20k";
 
 /// The rights at a place.
@@ -80,8 +80,8 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     leave_host()
 }
 
-/// Adds a run's own to a copy of a root that was prepared: a working folder with what lies in the open one and these
-/// files, and its processes. The place of the folder is there.
+/// Adds a run's own parts to a copy of a prepared root: a working folder with the contents of the open one and these
+/// files, and its processes. The place of the folder exists.
 ///
 /// # Errors
 ///
@@ -100,7 +100,7 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
     close_root()
 }
 
-/// Returns a new root with all that lies outside the working folder, and that folder where it does not lie in memory.
+/// Returns a new root with all that is outside the working folder, and that folder unless it is in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
     mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
@@ -133,13 +133,13 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     Ok(view)
 }
 
-/// Lays nothing over the grader's own files and folders beneath a folder, as far as they are in sight.
+/// Covers the grader's own files and folders beneath a folder with empty ones, if they are visible.
 fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
     if own.is_empty() {
         return Ok(());
     }
-    // The sample may be graded where it lies, to show that all works.
+    // The sample may be graded in its own place, to show that all works.
     let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
     for path in own.iter().filter(|path| **path != program) {
         hide(path).map_err(stage("hide the grader's own files"))?;
@@ -164,8 +164,8 @@ fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     mounts::mount(c"proc", c"/proc", shown, false).map_err(stage("mount /proc"))
 }
 
-/// Shows this process nothing of `/proc` but its own entry, in a folder that counts nobody: the root of a `/proc` has a
-/// link for every process of the machine. Where no file rules guard that entry, only some of its files are shown: the
+/// Hides `/proc` from this process except its own entry, in a folder that counts no process: the root of a `/proc` has
+/// a link for every process of the machine. If no file rules guard that entry, only some of its files are shown: the
 /// kernel would take `/proc/self/exe`, the grader, for the program's loader.
 pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
     let own = std::process::id().to_string();
@@ -231,8 +231,8 @@ struct FileView {
 }
 
 impl FileView {
-    /// Brings the file or folder at the path into sight under the same path. A path that the host lacks is left out,
-    /// and so are its processes: `/proc` is made anew.
+    /// Makes the file or folder at the path visible under the same path. A path that the host lacks is left out, and
+    /// its processes, too: `/proc` is made anew.
     fn mount_place(&mut self, path: &Path, access: Access) -> io::Result<()> {
         let Some(real) = self.resolve(path)? else { return Ok(()) };
         if real == Path::new("/") {

@@ -1,7 +1,7 @@
 //! A working folder in memory: a file system of its own whose size and number of files the kernel limits.
 //!
-//! Files there are gone with the run, unless the grader holds them open. Their pages belong to no process, so that they
-//! are not part of a program's resident memory but where it maps them; a control group's limit has room for all of
+//! Files there are removed with the run, unless the grader holds them open. Their pages belong to no process, so that
+//! they are part of a program's resident memory only while it maps them. A control group's limit has room for all of
 //! them.
 
 use std::{

@@ -1,7 +1,7 @@
-//! The Landlock rules: which files the program may reach, and that it may not signal anybody outside.
+//! The Landlock rules: they name the files that the program may reach, and forbid signals to processes outside.
 //!
-//! Rules name open descriptors, so that they are made while we still are who we are, and come into force in the child
-//! after it has become another user.
+//! Rules name open descriptors. They are therefore made before the user changes, and come into force in the child after
+//! it has become another user.
 
 use std::{
     collections::BTreeSet,
@@ -33,7 +33,7 @@ const NEWEST: ABI = ABI::V6;
 
 /// The folders of shared libraries, loaders and the libraries of interpreters.
 pub(super) const LIBRARIES: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
-/// Files that loaders and runtimes ask about the machine: its libraries, its processors and its time zone.
+/// Files in which loaders and runtimes read about the machine: its libraries, its processors and its time zone.
 const MACHINE: [&str; 6] = [
     "/etc/ld.so.cache",
     "/etc/ld.so.preload",
@@ -42,7 +42,7 @@ const MACHINE: [&str; 6] = [
     "/sys/devices/system/cpu/possible",
     "/sys/devices/system/cpu/present",
 ];
-/// Files that runtimes ask about their own process.
+/// Files in which runtimes read about their own process.
 const OWN_FILES: [&CStr; 9] =
     [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
 /// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
@@ -80,7 +80,7 @@ pub(super) fn in_sight(order: &RunOrder) -> Vec<PathBuf> {
 pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
 impl Places {
-    /// Opens those of an order. Paths that this host lacks are left out.
+    /// Opens the places of an order. Paths that this host lacks are left out.
     pub(super) fn for_order(order: &RunOrder) -> Self {
         let read = AccessFs::ReadFile | AccessFs::ReadDir;
         let execute = read | AccessFs::Execute;
@@ -119,7 +119,7 @@ impl Places {
     }
 
     /// Moves the files to numbers that no program may have, so that they do not count for the limit of a child. `None`
-    /// where this process itself may not have as many.
+    /// if this process itself may not have as many.
     pub(super) fn out_of_the_way(self) -> Option<Self> {
         const FIRST: u32 = 800;
         let moved =
@@ -163,7 +163,7 @@ pub(super) fn rules(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -
 }
 
 /// Adds the files of its own entry in `/proc` that the process may read, one by one, because the entry also shows
-/// sockets, mounts and groups of the host and which pages of a file are in memory. Only the child itself can do so.
+/// sockets, mounts and groups of the host and which pages of a file are in memory. Only the child itself can do this.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
     let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
@@ -198,7 +198,7 @@ fn version(number: u8) -> ABI {
     [NEWEST, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST)
 }
 
-/// Refuses everything that the running kernel can refuse unless a rule allows it.
+/// Denies everything that the running kernel can deny unless a rule allows it.
 fn handled(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     let mut ruleset = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
@@ -214,8 +214,8 @@ fn handled(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     ruleset.create().map_err(refused)
 }
 
-/// Returns the rights in the program's folder: it may make, change and remove files and folders. Links to elsewhere,
-/// special files and executing are for build tools, if anybody.
+/// Returns the rights in the program's folder: it may make, change and remove files and folders. Only build tools may
+/// link to other places, make special files and execute.
 fn in_folder(tools: bool) -> BitFlags<AccessFs> {
     let submission = AccessFs::ReadFile
         | AccessFs::ReadDir

@@ -8,7 +8,7 @@ use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-server", version, max_term_width = 100)]
 pub(super) struct Arguments {
-    /// How the log is written.
+    /// The format of the log.
     #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "FOSSSIM_LOG_FORMAT", global = true)]
     pub(super) log_format: LogFormat,
     #[command(subcommand)]
@@ -36,7 +36,7 @@ pub(super) enum Command {
     Openapi,
 }
 
-/// Where everything is kept.
+/// The places of database and files.
 #[derive(Debug, Args)]
 pub(super) struct StorageArguments {
     /// The folder of the database, the artifacts and the jobs' working folders.
@@ -51,7 +51,7 @@ pub(super) struct StorageArguments {
     pub(super) store: Option<String>,
 }
 
-/// How workers work.
+/// The settings of workers.
 #[derive(Debug, Args)]
 pub(super) struct WorkloadArguments {
     /// Scenes of one grading at one time.
@@ -73,7 +73,8 @@ pub(super) struct WorkloadArguments {
 pub(super) struct ServiceArguments {
     #[command(flatten)]
     pub(super) place: StorageArguments,
-    /// Where to listen. Only this machine by default: put a proxy with HTTPS in front for others.
+    /// The address on which the server listens. By default only this machine can reach it: put a proxy with HTTPS in
+    /// front for others.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
     pub(super) listen: SocketAddr,
     /// The address that people know the server by, such as https://grades.example.org. With https, cookies are for
@@ -105,14 +106,14 @@ pub(super) struct ServiceArguments {
     /// MiB of uploads and reports that are kept in all; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 0)]
     pub(super) keep_in_all: u64,
-    /// With fewer MiB than this free on the data folder's disk uploads are rejected, so that accepted ones can be
+    /// If fewer MiB than this are free on the data folder's disk, uploads are rejected, so that accepted ones can be
     /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
     /// Let people sign in with passwords, too.
     #[arg(long)]
     pub(super) passwords: bool,
-    /// For this many days uploads and reports are kept; 0 for ever. Grades and their history always stay.
+    /// The days for which uploads and reports are kept; 0 is forever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
     /// Allow learning platforms without HTTPS, for tests on one machine.
@@ -171,7 +172,7 @@ pub(super) struct RestoreArguments {
     pub(super) backup: PathBuf,
 }
 
-/// Says by the exit code whether a server, by its address, or a worker, by its data folder, is well: for probes.
+/// Reports by the exit code whether a server (by its address) or a worker (by its data folder) is well: for probes.
 #[derive(Debug, Args)]
 pub(super) struct HealthArguments {
     /// The server's address.

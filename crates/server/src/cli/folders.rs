@@ -12,13 +12,13 @@ use std::{
     time::Duration,
 };
 
-/// The longest time that an upload or a job that nobody finished may lie around.
+/// The longest time that an unfinished upload or job is kept.
 const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
 
 /// The data folder's parts.
 #[derive(Debug, Clone)]
 pub(super) struct ServiceFolders {
-    /// Database and store, for nobody else's eyes.
+    /// Database and store, readable only by the server's user.
     pub(super) data: PathBuf,
     pub(super) incoming: PathBuf,
     pub(super) backups: PathBuf,
@@ -76,7 +76,7 @@ impl ServiceFolders {
         })
     }
 
-    /// Returns the store that was asked for, or the one in the data folder.
+    /// Returns the requested store, or the one in the data folder.
     pub(super) fn store(&self, place: &StorageArguments) -> Result<Store> {
         match &place.store {
             Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
@@ -103,14 +103,14 @@ impl ServiceFolders {
         self.data.join("work").join(worker)
     }
 
-    /// Opens the database that was asked for, or the one in the data folder.
+    /// Opens the requested database, or the one in the data folder.
     pub(super) async fn open_database(&self, place: &StorageArguments) -> Result<(Database, Address)> {
         let address = self.database(place);
         let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
         Ok((database, address))
     }
 
-    /// Returns the database that was asked for, or the one in the data folder.
+    /// Returns the requested database, or the one in the data folder.
     pub(super) fn database(&self, place: &StorageArguments) -> Address {
         database(place, &self.data)
     }

@@ -1,5 +1,5 @@
-//! Signs of life for anybody who watches this process: systemd (`Type=notify` with `WatchdogSec`), and probes that look
-//! at a file in the data folder.
+//! Signs of life for monitors of this process: systemd (`Type=notify` with `WatchdogSec`), and probes that read a file
+//! in the data folder.
 use sd_notify::NotifyState;
 use std::{
     fs,
@@ -10,21 +10,21 @@ use std::{
 /// The file that is touched, in the data folder.
 const FILE: &str = "alive";
 
-/// How often there is a sign, where the watchdog does not want it sooner.
+/// The time between two signs, unless the watchdog wants them sooner.
 const EVERY: Duration = Duration::from_secs(10);
 
-/// The longest time that a look at oneself may take.
+/// The longest time that a check of the process itself may take.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// A process that has been silent for this time counts as dead.
 const SILENCE: Duration = Duration::from_secs(60);
 
-/// Says that the process has begun its work.
+/// Reports that the process has begun its work.
 pub(super) fn say_ready() {
     tell(&[NotifyState::Ready]);
 }
 
-/// Says that it ends.
+/// Reports that the process ends.
 pub(super) fn say_stopping() {
     tell(&[NotifyState::Stopping]);
 }
@@ -35,7 +35,7 @@ fn tell(state: &[NotifyState<'_>]) {
     }
 }
 
-/// Gives signs for ever, whenever a look says that all is well.
+/// Gives signs forever, whenever a check finds that all is well.
 pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
     let watchdog = sd_notify::watchdog_enabled();
     let every = watchdog.map_or(EVERY, |watchdog| (watchdog / 3).min(EVERY));

@@ -11,8 +11,8 @@ pub(super) fn begin(format: LogFormat) {
         Ok("error") => LevelFilter::ERROR,
         _ => LevelFilter::INFO,
     };
-    // A log that can't be written, as on a full disk, is no reason to answer nobody: a report of it would go the same
-    // way, and panic.
+    // A log that can't be written, as on a full disk, is no reason to stop answering. A report of the fault would be
+    // written to the same log, and panic.
     let log = fmt::layer().with_writer(std::io::stderr).with_target(false).log_internal_errors(false);
     let log = match format {
         LogFormat::Text => log.with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr())).boxed(),

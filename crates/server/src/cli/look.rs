@@ -1,11 +1,11 @@
-//! `look-through`: looks through a stranger's file in a process of its own, which may be ended at any moment.
+//! `look-through`: examines an uploaded file in a process of its own, which may be ended at any moment.
 use super::arguments::LookThroughArguments;
 use crate::web;
 use anyhow::Result;
 use fosssim_intake::ArchiveLimits;
 use std::fs::File;
 
-/// Prints what the file is, or why it is refused, as JSON.
+/// Prints the kind of the file, or the reason for rejecting it, as JSON.
 pub(super) fn run(arguments: &LookThroughArguments) -> Result<()> {
     let answer = match &arguments.into {
         Some(folder) => fosssim_intake::unpack(File::open(&arguments.file)?, folder, ArchiveLimits::USUAL)

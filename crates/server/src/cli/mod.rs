@@ -16,7 +16,7 @@ use clap::Parser;
 use std::process::ExitCode;
 use tokio_util::sync::CancellationToken;
 
-/// Runs the command that the program's arguments ask for.
+/// Runs the command that the program's arguments request.
 pub fn main() -> ExitCode {
     match run(&Arguments::parse()) {
         Ok(code) => ExitCode::from(code),
@@ -28,7 +28,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<u8> {
-    // Neither threads nor a log: it has little memory, and its answer is all that it says.
+    // This command uses neither threads nor a log: it has little memory, and prints only its answer.
     if let Command::LookThrough(arguments) = &arguments.command {
         return look::run(arguments).map(|()| 0);
     }
@@ -49,7 +49,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
     })
 }
 
-/// Returns a token that is cancelled by the first SIGINT or SIGTERM; a second one ends the process at once.
+/// Returns a token that is canceled by the first SIGINT or SIGTERM; a second one ends the process immediately.
 fn until_signalled() -> Result<CancellationToken> {
     use tokio::signal::unix::{SignalKind, signal};
     let (mut interrupt, mut terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);

@@ -35,7 +35,7 @@ const MIB: u64 = 1 << 20;
 /// The longest time that the grader may take to answer.
 const ANSWER: Duration = Duration::from_secs(20);
 
-/// How often the server looks for what is not kept any longer.
+/// The time between two searches for data that are no longer kept.
 const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
 
 pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
@@ -112,8 +112,8 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     Ok(())
 }
 
-/// Says on standard output, for people and scripts, where the server listens and how to come in; the log is on standard
-/// error and holds no secrets. With an example, also where its program is.
+/// Prints to standard output, for people and scripts, where the server listens and how to sign in. The log is on
+/// standard error and holds no secrets. With an example, it prints also where the example's program is.
 async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, grader: Option<&Path>) -> Result<()> {
     let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
     let mut output = std::io::stdout();
@@ -137,7 +137,7 @@ async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, gr
     Ok(output.flush()?)
 }
 
-/// Gives up what is older than is kept, and what a server that was killed left behind, every now and then, for ever.
+/// Removes from time to time, forever, what is older than is kept, and what a killed server left behind.
 async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
         match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
@@ -149,7 +149,7 @@ async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     }
 }
 
-/// Asks the grader for the suites that come with it. A server whose workers are elsewhere may have none to ask.
+/// Gets the suites that come with the grader. A server whose workers are elsewhere may have no grader.
 async fn suites(named: Option<&Path>) -> Suites {
     let asked = async { Ok(Suites::read(&answer(named, &["suite", "list", "--format", "json"]).await?)?) };
     asked.await.unwrap_or_else(|error: anyhow::Error| {
@@ -158,7 +158,7 @@ async fn suites(named: Option<&Path>) -> Suites {
     })
 }
 
-/// Asks the grader for the page that checks traces in a browser. One that was built without it has none.
+/// Gets the page that checks traces in a browser from the grader. A grader that was built without it has none.
 async fn checker(named: Option<&Path>) -> Option<String> {
     let asked = async { Ok(String::from_utf8(answer(named, &["page", "--output", "-"]).await?)?) };
     let asked = asked.await.inspect_err(|error: &anyhow::Error| {
@@ -178,7 +178,7 @@ async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
     Ok(said.stdout)
 }
 
-/// Brings the tables up to date; a SQLite database that holds something is copied before.
+/// Updates the tables; a SQLite database that holds something is copied before.
 async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
@@ -193,8 +193,8 @@ async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address
     Ok(())
 }
 
-/// Copies a SQLite database into a new file, which has its name only when it is whole; what a killed server left of an
-/// earlier try goes.
+/// Copies a SQLite database into a new file, which gets its name only when it is whole. A file that a killed server
+/// left is removed.
 async fn copy_before(database: &Database, backups: &Path, version: i64) -> Result<PathBuf> {
     std::fs::create_dir_all(backups)?;
     for entry in std::fs::read_dir(backups)?.flatten() {

@@ -68,7 +68,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let source = RemoteSource::new(server, token, &name);
     let folder = folders.work(&name);
     heartbeat::say_ready();
-    // A worker whose server is away is well: it goes on trying, and has what it holds.
+    // A worker that can't reach its server is well: it keeps trying, and keeps what it holds.
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     let slots = slots(arguments.slots);
     tracing::info!(worker = name, server, slots, grader = %grader.display(), "working");
@@ -80,13 +80,13 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     Ok(())
 }
 
-/// Makes a worker's name unique: what tells two workers of one name apart comes from the process.
+/// Makes a worker's name unique: the process adds what distinguishes two workers of one name.
 fn unique_name(name: Option<&str>) -> String {
     let name = plain(name.map_or_else(host, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
 }
 
-/// Returns the slots that were asked for, or one per core.
+/// Returns the requested slots, or one per core.
 fn slots(slots: Option<NonZeroUsize>) -> usize {
     slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
@@ -97,7 +97,7 @@ pub(super) fn policy(work: &WorkloadArguments) -> QueuePolicy {
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
 
-/// Returns the grader that was named, or the one beside this program.
+/// Returns the named grader, or the one next to this program.
 pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
     let path = match named {
         Some(path) => path.to_owned(),
@@ -120,7 +120,7 @@ pub(super) struct LocalWorkers {
 }
 
 impl LocalWorkers {
-    /// Works until `stop` is cancelled.
+    /// Works until `stop` is canceled.
     pub(super) async fn work(
         &self,
         work: &WorkloadArguments,

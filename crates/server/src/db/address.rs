@@ -1,4 +1,4 @@
-//! Where the database is, without ever showing its password.
+//! The address of the database, which never shows its password.
 use std::{fmt, path::PathBuf, str::FromStr};
 
 /// A database's address as given: `sqlite:FILE` or `postgres://USER:PASSWORD@HOST/NAME`.

@@ -1,4 +1,4 @@
-//! The errors of a database, as far as callers act on them.
+//! The errors of a database that callers distinguish.
 use thiserror::Error;
 
 /// The reason why a statement failed.
@@ -13,7 +13,7 @@ pub enum DbError {
     /// Something like it is there already; the statement's author knows what.
     #[error("it exists already: {0}")]
     Conflict(String),
-    /// A statement is wrong, a value is not what it should be.
+    /// A statement is wrong, or a value is not as expected.
     #[error("the database refused: {0}")]
     Other(String),
 }

@@ -40,7 +40,7 @@ const MIGRATIONS: [(&str, &str); 28] = [
 /// The version that this program works with.
 pub const LATEST: i64 = MIGRATIONS.len() as i64;
 
-/// PostgreSQL's name for the lock that keeps two servers from migrating at once; any number will do.
+/// PostgreSQL's name for the lock that keeps two servers from migrating at once; the number is arbitrary.
 const LOCK: i64 = 0x6673_6f5f_6d69_6772;
 
 /// The reason why the tables can't be brought up to date.
@@ -55,7 +55,7 @@ pub enum MigrateError {
         /// The database's version.
         found: i64,
     },
-    /// A change is not the one that was applied.
+    /// A change differs from the one that was applied.
     #[error("change {number} ({name}) was applied with other contents: this program was built from changed sources")]
     Changed {
         /// The migration's place in the list.
@@ -71,7 +71,7 @@ pub enum MigrateError {
 /// Returns the version of the tables; 0 for an empty database.
 ///
 /// # Errors
-/// When the database can't be asked.
+/// When the database does not answer.
 pub async fn version(database: &Database) -> Result<i64, DbError> {
     let mut transaction = database.read().await?;
     let there = match transaction.dialect() {

@@ -1,9 +1,9 @@
-//! The database: PostgreSQL or SQLite behind one type, with the same statements. It knows how to run a statement and
-//! nothing of what is stored: the rooms above write the statements.
+//! The database: PostgreSQL or SQLite behind one type, with the same statements. It runs statements and does not know
+//! what is stored: the rooms above write the statements.
 //!
-//! Every statement runs inside a transaction, and none leaves anything behind in the session: so the service works
+//! Every statement runs inside a transaction, and leaves nothing behind in the session, so that the service works
 //! behind a pooler that hands another connection to every transaction (PgBouncer). All times are milliseconds since
-//! 1970 by the database's own clock, which `{now}` stands for; a worker's clock is never asked.
+//! 1970 by the database's own clock, written as `{now}`; a worker's clock is never used.
 
 mod address;
 mod fault;
@@ -40,22 +40,22 @@ const PATIENCE: Duration = Duration::from_secs(30);
 /// Connections to PostgreSQL that one process holds at most.
 const CONNECTIONS: u32 = 10;
 
-/// How many of them are only for those who go first.
+/// How many of the connections are only for requests with priority.
 const FOR_THE_FIRST: u32 = 3;
 
-/// How PostgreSQL begins a transaction. A process that freezes in the middle of one must not keep its locks, nor may a
-/// statement wait for ever. The settings end with the transaction, as a pooler wants it.
+/// The statement that begins a transaction in PostgreSQL. A process that freezes in a transaction must not keep its
+/// locks, and no statement may wait forever. The settings end with the transaction, as a pooler requires.
 const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
                      SET LOCAL statement_timeout = '60s'";
 
-/// Returns whether a connection can be used again; else the pool closes it and opens a new one. One whose COMMIT and
-/// ROLLBACK both failed, as on a full disk, counts as in a transaction for ever and could begin no other. One from
-/// before the database last failed may lead to a server that is read-only now, or is none any more.
+/// Returns whether a connection can be used again; else the pool closes it and opens a new one. A connection whose
+/// COMMIT and ROLLBACK both failed, as on a full disk, counts as in a transaction forever and could begin no other. A
+/// connection from before the last failure of the database may lead to a server that is read-only now, or stopped.
 fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool {
     !connection.is_in_transaction() && faults.trust(age)
 }
 
-/// Returns how to reach a PostgreSQL. A pooler refuses start-up settings that it does not know.
+/// Returns the options for connecting to PostgreSQL. A pooler rejects start-up settings that it does not know.
 fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
     let options: PgConnectOptions = url.parse().map_err(DbError::from)?;
     Ok(options
@@ -72,7 +72,7 @@ pub struct Database {
     faults: Faults,
     /// Whether a newer program has changed the tables: then nothing is written any more.
     is_outdated: Arc<AtomicBool>,
-    /// The turns of those who do not go first: only this many use, or wait for, the connections.
+    /// The turns of requests without priority: only this many use, or wait for, the connections.
     turns: Arc<Semaphore>,
     goes_first: bool,
 }
@@ -90,9 +90,9 @@ enum Engine {
 /// Which database it is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
-    /// The embedded one: a file beside the artifacts.
+    /// The embedded database: a file next to the artifacts.
     Sqlite,
-    /// The distributed one.
+    /// The distributed database.
     Postgres,
 }
 
@@ -103,7 +103,7 @@ impl Database {
     /// When it can't be reached within half a minute.
     pub async fn open(address: &Address) -> Result<Self, DbError> {
         let turns = match address {
-            // The writer's queue is short then: anybody who goes first waits for one other at most.
+            // The writer's queue is short then: a request with priority waits for at most one other.
             Address::Sqlite(_) => 1,
             Address::Postgres(_) => CONNECTIONS - FOR_THE_FIRST,
         };
@@ -152,8 +152,8 @@ impl Database {
         Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
-    /// Returns the database for those whom requests must not keep waiting: workers, whose leases run out. However many
-    /// hand in at one time, what is graded is kept and what waits is claimed.
+    /// Returns the database with priority, for callers that requests must not delay: workers, whose leases run out.
+    /// However many uploads arrive, grades are kept and waiting jobs are claimed.
     #[must_use]
     pub fn first(&self) -> Self {
         Self { goes_first: true, ..self.clone() }
@@ -176,7 +176,7 @@ impl Database {
         }
     }
 
-    /// Begins a transaction that writes. It sees what was committed before, and nothing of it stands unless
+    /// Begins a transaction that writes. It sees what was committed before, and has no effect unless
     /// [`Transaction::commit`] succeeds.
     ///
     /// # Errors
@@ -194,10 +194,10 @@ impl Database {
         }
     }
 
-    /// Begins a transaction that writes, and waits this long for those who came before.
+    /// Begins a transaction that writes, and waits this long for earlier ones.
     ///
     /// # Errors
-    /// As [`Database::begin`]; at once where it is not others that keep it waiting.
+    /// As [`Database::begin`]; immediately if it does not wait for others.
     pub async fn begin_within(&self, patience: Duration) -> Result<Transaction, DbError> {
         let begun = Instant::now();
         loop {
@@ -263,7 +263,7 @@ impl Database {
         }
     }
 
-    /// Closes all connections; what is in their transactions ends first.
+    /// Closes all connections; their transactions end first.
     pub async fn close(&self) {
         match &self.engine {
             Engine::Sqlite { writer, readers } => {

@@ -7,8 +7,8 @@ use std::{
 };
 use tokio::sync::OwnedSemaphorePermit;
 
-/// A transaction. Dropped without [`commit`](Self::commit), nothing of it stands. Anybody who does not go first holds a
-/// turn as long as it lasts ([`Database::first`](super::Database::first)).
+/// A transaction. Dropped without [`commit`](Self::commit), it has no effect. Without priority it holds a turn as long
+/// as it lasts ([`Database::first`](super::Database::first)).
 #[derive(Debug)]
 pub struct Transaction {
     inner: Inner,
@@ -17,7 +17,7 @@ pub struct Transaction {
     turn: Turn,
 }
 
-/// When the database last failed in a way that may be its connections': those from before are thrown away.
+/// The time of the last fault that may come from connections: older connections are dropped.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Faults(Arc<Mutex<Option<Instant>>>);
 
@@ -75,7 +75,7 @@ impl Transaction {
         }
     }
 
-    /// Runs a statement and says how many rows it changed.
+    /// Runs a statement and returns the number of rows that it changed.
     ///
     /// # Errors
     /// An error of the database.
@@ -114,7 +114,7 @@ impl Transaction {
     /// Runs a statement and reads its rows.
     ///
     /// # Errors
-    /// The database's error, or that of a row.
+    /// The database's error, or a row's.
     pub async fn all<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<T>, DbError> {
         self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
@@ -122,7 +122,7 @@ impl Transaction {
     /// Runs a statement that has one row or none, and reads it.
     ///
     /// # Errors
-    /// The database's error, or that of the row.
+    /// The database's error, or the row's.
     pub async fn find<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<T>, DbError> {
         self.row(statement, values).await?.as_ref().map(T::from_row).transpose()
     }
@@ -154,7 +154,7 @@ impl Transaction {
         Ok(())
     }
 
-    /// Makes everything stand that this transaction wrote. After an error nobody knows whether it does: ask.
+    /// Makes everything permanent that this transaction wrote. After an error this is uncertain: query it.
     ///
     /// # Errors
     /// An error of the database.

@@ -41,8 +41,8 @@ macro_rules! values {
     ($($value:expr),* $(,)?) => { &[$($crate::db::Value::from($value)),*] };
 }
 
-/// A row of an answer. Columns are asked for by name; one that is not there, or holds another type, is a fault of the
-/// statement and ends in [`DbError::Other`].
+/// A row of an answer. Columns are read by name; a missing column, or one of another type, is a fault of the statement
+/// and ends in [`DbError::Other`].
 #[derive(Debug)]
 pub struct Row(pub(super) Inner);
 
@@ -136,7 +136,7 @@ pub trait FromRow: Sized {
     fn from_row(row: &Row) -> Result<Self, DbError>;
 }
 
-/// Types whose fields are called as their columns, or as is said.
+/// Types with fields that have the names of their columns, or the given names.
 macro_rules! from_row {
     ($($type:ty { $($field:ident $(= $column:literal)?),* $(,)? })*) => {
         $(impl $crate::db::FromRow for $type {
@@ -148,7 +148,8 @@ macro_rules! from_row {
 }
 pub(crate) use from_row;
 
-/// A value of whose fields some are called as their columns, or as is said; those behind the semicolon are written out.
+/// A value with fields that have the names of their columns, or the given names; fields behind the semicolon are
+/// written out.
 macro_rules! read_row {
     ($row:ident => $type:ident { $($field:ident $(= $column:literal)?),* $(,)?; $($rest:tt)* }) => {
         $type { $($field: $crate::db::read_row!(@ $row $field $($column)?),)* $($rest)* }

@@ -1,5 +1,4 @@
-//! Numbers for monitors: counted by indexes. Many who ask at once
-//! get one answer, and hold one connection.
+//! Numbers for monitors: counted by indexes. Simultaneous requests share one answer, and hold one connection.
 use crate::{
     db::{Database, DbError},
     health,
@@ -10,7 +9,7 @@ use crate::{
 use std::time::{Duration, Instant};
 use tokio::sync::Mutex;
 
-/// For so long an answer counts.
+/// The time for which an answer is used.
 const FRESH: Duration = Duration::from_secs(1);
 
 /// The last answer.
@@ -41,7 +40,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
     let row = transaction.one(statement, values![]).await?;
     metrics.submissions = row.int("submissions")?;
     let mut graded = row.int("results")?;
-    // The rare ones: of each that was given up there is a result, too.
+    // The rare results: each job that was given up has a result, too.
     for kind in ["failed try", "late answer", "buried"] {
         let n = transaction.one("SELECT count(*) AS n FROM event WHERE kind = ?", values![kind]).await?.int("n")?;
         graded -= if kind == "buried" { n } else { 0 };

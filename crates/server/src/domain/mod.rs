@@ -1,7 +1,7 @@
-//! Roles and their rights. Requests get their hands on the database through one of these only, and each offers what its
-//! role allows and nothing else: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with
-//! their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. A handler
-//! says whom it serves by the type it takes, and one that forgets to has nothing to read from.
+//! Roles and their rights. Requests reach the database only through one of these, and each offers only what its role
+//! allows: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with their own
+//! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. The type that a
+//! handler takes names the role that it serves; without such a type it has nothing to read from.
 
 mod accounts;
 mod assignments;
@@ -51,7 +51,7 @@ use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use submissions::standings::SharedStandings;
 use tokio::sync::OnceCell;
 
-/// The parts of the service. Those that hold data are for this room alone; the rest everybody may read.
+/// The parts of the service. Only this room uses those that hold data; all rooms may read the others.
 #[derive(Debug, Clone)]
 pub struct App(Arc<Parts>);
 
@@ -68,30 +68,30 @@ struct Parts {
     storage: Storage,
     /// Counts requests by account.
     throttle: Throttle,
-    /// How classes stand, for many who ask at one time.
+    /// The standings of classes, shared by simultaneous requests.
     standings: SharedStandings,
-    /// Signs what is looked at again, and stands nowhere.
+    /// The key that signs data for a later check; it is stored nowhere else.
     signing_key: OnceCell<String>,
     instruments: Instruments,
     options: Options,
 }
 
-/// How the service is to be.
+/// The settings of the service.
 #[derive(Debug, Default)]
 pub struct Options {
     /// The suites that come with the grader.
     pub suites: Suites,
-    /// The grader, where there is one: it looks at suites before anybody is graded by them.
+    /// The grader, if there is one: it checks suites before they grade submissions.
     pub grader: Option<PathBuf>,
     /// The page that checks traces in a browser, where the grader has it.
     pub checker: Option<String>,
-    /// Where uploads wait until they are stored.
+    /// The folder of uploads that are not stored yet.
     pub incoming: PathBuf,
-    /// Uploads are refused when fewer bytes are free on that disk.
+    /// Uploads are rejected when fewer bytes are free on that disk.
     pub low_water: u64,
     /// The address that people know the service by.
     pub public: String,
-    /// Where a request's own address is found: the other end of its connection, or a header of the proxy.
+    /// The source of a request's own address: the other end of its connection, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
     /// The longest time that a body may pause.
     pub patience: Duration,
@@ -99,7 +99,7 @@ pub struct Options {
     pub requests_per_minute: u32,
     /// Transfers at one time, and bytes that are kept.
     pub limits: TransferLimits,
-    /// The parts that signing in with passwords needs; nothing where that is not allowed.
+    /// The parts that signing in with passwords needs; `None` if that is not allowed.
     pub passwords: Option<Passwords>,
     /// Speaks with learning platforms.
     pub lti: Arc<Lti>,

@@ -48,12 +48,12 @@ pub struct Assignment {
     pub title: String,
     /// Whether students see it.
     pub visible: bool,
-    /// How it is graded.
+    /// The rules by which it is graded.
     pub settings: Settings,
     /// Since when students see groups that the suite hides, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_at: Option<i64>,
-    /// Counts its changes: a change that names an earlier one is refused.
+    /// The number of its changes: a change that names an earlier one is rejected.
     pub revision: i64,
 }
 
@@ -80,12 +80,12 @@ pub struct Submission {
     pub digest: String,
     /// The submission's size in bytes.
     pub size: i64,
-    /// The time when it came, in milliseconds since 1970.
+    /// The time when it arrived, in milliseconds since 1970.
     pub created_at: i64,
-    /// When its bytes and reports were given up; the grade and its history stay.
+    /// The time when its bytes and reports were removed; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
-    /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `cancelled`.
+    /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `canceled`.
     pub state: String,
     /// The number of jobs that are graded before it, while it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,13 +93,13 @@ pub struct Submission {
     /// In how many seconds its grade may be expected, while it waits and workers are there.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
-    /// How far the grading is, while it runs.
+    /// The progress of the grading while it runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<Progress>,
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<ResultView>,
-    /// How late it came, where that costs points; staff's points cost nothing.
+    /// The delay of a late submission, if it costs points; points that staff gave lose nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late: Option<Lateness>,
     /// The words of staff about it.
@@ -126,18 +126,18 @@ pub struct Mark {
     /// Points that count instead of the grader's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<String>,
-    /// Why, or what else there is to say.
+    /// The reason, or another comment.
     pub comment: String,
-    /// The one who says so.
+    /// The author of the mark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// When, in milliseconds since 1970.
+    /// The time of the mark, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marked_at: Option<i64>,
     /// The question of the owner.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub request: Option<String>,
-    /// The time when they asked, in milliseconds since 1970.
+    /// The time of the request, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub requested_at: Option<i64>,
 }
@@ -163,14 +163,15 @@ impl Deref for ResultView {
     }
 }
 
-/// How a result came to count.
+/// The way in which a result came to count.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct History {
-    /// When, in milliseconds since 1970. The full hour while groups that the suite hides are withheld.
+    /// The time of the change, in milliseconds since 1970. The full hour while groups that the suite hides are
+    /// withheld.
     pub changed_at: i64,
     /// Why, as students read it.
     pub reason: String,
-    /// The one who wanted it; nobody when the grader did.
+    /// The person who wanted it; `None` for the grader.
     pub by: Option<String>,
     /// The verdict before.
     pub old_code: Option<String>,
@@ -198,11 +199,11 @@ pub struct History {
 pub struct Event {
     /// The event's number, which only grows.
     pub id: i64,
-    /// When, in milliseconds since 1970.
+    /// The time of the event, in milliseconds since 1970.
     pub happened_at: i64,
     /// The event's kind.
     pub kind: String,
-    /// The one who did it; nobody when the service did.
+    /// The person who did it; `None` for the service.
     pub actor: Option<String>,
     /// The submission that it is about.
     pub submission: Option<i64>,
@@ -219,7 +220,7 @@ pub struct Queue {
     pub regrades: i64,
     /// Running jobs.
     pub running: i64,
-    /// Jobs that were given up, of which somebody should know.
+    /// Jobs that were given up, for staff to review.
     pub buried: i64,
     /// Workers that were seen lately.
     pub workers: Vec<QueueWorker>,
@@ -234,19 +235,19 @@ pub struct QueueWorker {
     pub version: String,
     /// The number of gradings that it does at one time.
     pub slots: i64,
-    /// How many it does now.
+    /// The number of jobs that it runs now.
     pub running: i64,
     /// The time when it was last seen, in milliseconds since 1970.
     pub seen_at: i64,
     /// Since when it takes no jobs because it can't grade.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_since: Option<i64>,
-    /// How often something went wrong with it.
+    /// The number of its faults.
     pub faults: i64,
     /// The last fault.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
-    /// When that was.
+    /// The time of the last fault.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault_at: Option<i64>,
 }
@@ -259,7 +260,7 @@ from_row! {
     QueueWorker { name, version, slots, running, seen_at, aside_since, faults, fault, fault_at }
 }
 
-/// The columns of submissions; what follows says which.
+/// The columns of submissions; the rest of the statement selects the rows.
 macro_rules! submissions {
     ($rest:literal) => {
         concat!(
@@ -318,7 +319,7 @@ impl FromRow for Submission {
     }
 }
 
-/// Returns how far a job is, while it runs and its worker says so.
+/// Returns the progress of a job, while it runs and its worker reports it.
 fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
     let is_running = row.maybe_text("state")?.as_deref() == Some("running");
     let read = |column| Ok::<_, DbError>(row.maybe_int(column)?.and_then(|number| u32::try_from(number).ok()));
@@ -326,7 +327,7 @@ fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
 }
 
 impl Submission {
-    /// Lets points that staff gave count instead of the grader's, of which being late costs some.
+    /// Lets points that staff gave count instead of the grader's; they lose nothing for being late.
     pub(super) fn overrule(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
@@ -349,8 +350,7 @@ pub(super) async fn submissions_of(
 /// The number of submissions that are read at a time.
 const PAGE: i64 = 500;
 
-/// Returns the submissions to an assignment behind the one of this number, oldest first: a page of them, none behind
-/// the last.
+/// Returns the submissions to an assignment after this number, oldest first: a page of them, none after the last.
 pub(super) async fn submissions_after(
     transaction: &mut Transaction,
     assignment: i64,
@@ -360,7 +360,7 @@ pub(super) async fn submissions_after(
     transaction.all(statement, values![assignment, after, PAGE]).await
 }
 
-/// Submissions of these numbers.
+/// Returns the submissions of these numbers.
 pub(super) async fn submissions_named(transaction: &mut Transaction, ids: &[i64]) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.id IN (SELECT CAST(wanted.value AS {int}) FROM {each})");
     transaction.all(statement, values![serde_json::to_string(ids).unwrap_or_default()]).await
@@ -398,8 +398,8 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// Returns how a grade came to be; with `withheld` as if there were no hidden groups. Suites of the course are staff's
-/// to know.
+/// Returns how a grade came to count; with `withheld` as if there were no hidden groups. Only staff sees names of the
+/// course's suites.
 pub(super) async fn history(
     transaction: &mut Transaction,
     submission: i64,
@@ -450,7 +450,7 @@ pub(super) async fn history(
     rows.iter().map(read).collect()
 }
 
-/// Returns a task in short: what it was graded by.
+/// Describes a task in short: by its suite, hints and rules.
 fn by_what(task: &str, is_staff: bool) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
     let suite = match task.suite {
@@ -479,7 +479,7 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Creates a change about nothing but what its words say.
+    /// Creates a change with words only.
     pub(super) fn new(kind: &'static str, actor: i64, text: &'a str) -> Self {
         Self { kind, actor, course: None, assignment: None, submission: None, text }
     }
@@ -493,9 +493,9 @@ pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Re
     transaction.execute(statement, values![kind, actor, course, assignment, submission, text]).await.map(drop)
 }
 
-/// Returns the queue as everybody of the staff may see it.
+/// Returns the queue as all staff may see it.
 pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
-    // Each by its index: of all jobs few are one of these.
+    // Each by its index: few of all jobs are of this kind.
     let statement = "SELECT
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS waiting,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,

@@ -29,16 +29,16 @@ const PATIENCE: Duration = Duration::from_secs(20);
 /// The longest answer that is read.
 const ANSWER: u64 = 8 << 20;
 
-/// An assertion of ours is good for so long, in seconds.
+/// The time for which an assertion of ours is valid, in seconds.
 const ASSERTION: u64 = 300;
 
-/// Tokens are asked for anew so long before they end.
+/// The time before their end at which tokens are renewed.
 const MARGIN: Duration = Duration::from_secs(30);
 
-/// The longest wait that a platform may ask for.
+/// The longest wait that a platform may request.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 
-/// The reason why a platform did not do what it was asked.
+/// The reason why a platform did not fulfill a request.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
     /// The platform is away, or has too much to do; a later request may succeed.
@@ -46,7 +46,7 @@ pub enum ServiceFault {
     Away {
         /// The platform's message, or what happened.
         why: String,
-        /// When it wishes to be asked again.
+        /// The wait before the next request that it wishes.
         after: Option<Duration>,
     },
     /// The platform rejects the request.
@@ -83,15 +83,15 @@ impl ServiceAnswer {
         read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
     }
 
-    /// Returns the answer, if it is one of success.
+    /// Returns the answer, if it reports success.
     pub(super) fn successful(self) -> Result<Self, ServiceFault> {
-        // The beginning of what it says, for people: one line.
+        // The beginning of its words, for people: one line.
         let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
         let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = format!("{} {said}", self.status);
         match self.status {
             200..=299 => Ok(self),
-            // Redirections are not followed: what is asked is said by who registered the platform.
+            // Redirections are not followed: only the address that an administrator registered is called.
             300..=399 => Err(ServiceFault::Refused(format!("{} leads elsewhere", self.status))),
             408 | 425 | 429 | 500.. => Err(ServiceFault::Away { why: text, after: self.after }),
             _ => Err(ServiceFault::Refused(text)),
@@ -144,7 +144,7 @@ impl Client {
         Self { agent, over_http, tokens: Mutex::default() }
     }
 
-    /// Reads what a platform publishes.
+    /// Reads a file that a platform publishes.
     pub(super) async fn get(&self, platform: &Platform, address: &str) -> Result<ServiceAnswer, ServiceFault> {
         let ask = Ask { address: address.to_owned(), accept: "application/json", body: None };
         self.send(platform, &ask, None).await?.successful()
@@ -164,8 +164,7 @@ impl Client {
         asked.map_err(ServiceFault::away)?
     }
 
-    /// Asks a service, with a token for this scope; once more with a new one when the platform does not know it any
-    /// more.
+    /// Calls a service, with a token for this scope; once more with a new one when the platform no longer knows it.
     pub(super) async fn call(
         &self,
         database: &Database,

@@ -1,5 +1,5 @@
 //! Tokens are signed by RS256, which every platform knows (SEC 5.1.1), and by nothing else: other algorithms are
-//! refused before any key is looked at, so that no public key is ever taken for a shared secret.
+//! rejected before any key is read, so that no public key is ever taken for a shared secret.
 use crate::problem::ensure;
 use jsonwebtoken::{
     Algorithm, DecodingKey, DecodingKeyKind, EncodingKey, Header, Validation,
@@ -13,7 +13,7 @@ use ring::{
 };
 use serde::{Serialize, de::DeserializeOwned};
 
-/// How far clocks may be apart, in seconds.
+/// The greatest difference between clocks, in seconds.
 pub(super) const LEEWAY: u64 = 60;
 
 struct Rs256Signer(RsaKeyPair);
@@ -73,7 +73,7 @@ static PROVIDER: CryptoProvider =
     CryptoProvider { signer_factory: signer, verifier_factory: verifier, key_utils: KeyUtils::new_unimplemented() };
 
 fn install() {
-    // The second time it is there already, and is told so.
+    // The second time it exists already, and the store reports that.
     let _: Result<(), &CryptoProvider> = PROVIDER.install_default();
 }
 

@@ -1,5 +1,5 @@
-//! The service's own keys. The first is made when somebody asks for it; a new one signs after an hour, when platforms
-//! had the time to read of it, and the one before it is told of until the next.
+//! The service's own keys. The first is made on demand. A new key signs after an hour, when platforms had the time to
+//! read it, and the one before it is published until the next.
 use super::crypto;
 use crate::{
     db::{Database, DbError, Row, Transaction},
@@ -13,7 +13,7 @@ use serde_json::{Value, json};
 /// Bits of a key; what every platform takes.
 const BITS: usize = 2048;
 
-/// A new key is only told of for so long.
+/// The time in which a new key is only published.
 const FIRST_TOLD: i64 = 3600 * 1000;
 
 /// A key of the service.
@@ -29,7 +29,7 @@ impl SigningKey {
     }
 }
 
-/// Makes a key, which is to sign from an hour on, or at once when it is the first.
+/// Makes a key, which signs from an hour on, or immediately if it is the first.
 ///
 /// # Errors
 /// An error of the database.
@@ -40,7 +40,7 @@ pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let statement =
         "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
     transaction.execute(statement, values![secret::random_hex(), private, modulus, exponent]).await?;
-    // The new one, and the one that signs so far.
+    // The new key, and the key that signs so far.
     let statement = "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
         AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)";
     transaction.execute(statement, values![]).await?;

@@ -1,4 +1,4 @@
-//! A platform's message about somebody who comes from it (LTI 5), and the part of it that is believed.
+//! A platform's message about a person who comes from it (LTI 5), and the part of it that is trusted.
 use super::{
     Platform,
     client::{now, scope},
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use thiserror::Error;
 
-/// A message is looked at for so long after it was made, in seconds.
+/// The age up to which a message is accepted, in seconds.
 const OLDEST: u64 = 3600;
 
 /// The reason why a message is not believed.
@@ -35,10 +35,10 @@ pub enum Rejection {
     /// The message is too old, or of the future.
     #[error("the message is too old, or a clock is wrong")]
     Time,
-    /// The message is about something else than was asked for.
+    /// The message answers another question.
     #[error("the message is not for this sign-in: {0} is another one")]
     Foreign(&'static str),
-    /// The message comes from a deployment that nobody named.
+    /// The message comes from an unregistered deployment.
     #[error("deployment {0} is not among those that an administrator named")]
     Deployment(String),
     /// Something is missing, or not understood.
@@ -46,7 +46,7 @@ pub enum Rejection {
     Content(String),
 }
 
-/// The role of somebody in a platform's course.
+/// The role of a person in a platform's course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LtiRole {
     /// A learner.
@@ -65,16 +65,16 @@ impl LtiRole {
     }
 }
 
-/// Somebody as a platform tells of them.
+/// A person as a platform describes them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LtiPerson {
     /// The platform's name for the person, which never changes.
     pub subject: String,
-    /// The person's role in the course there; nothing for parents, guests and others, and for those who left.
+    /// The person's role in the course there; `None` for parents, guests and others, and for people who left.
     pub role: Option<LtiRole>,
-    /// The person's name, where the platform tells.
+    /// The person's name, if the platform gives it.
     pub name: Option<String>,
-    /// The person's address, where the platform tells; used for a login's name only.
+    /// The person's address, if the platform gives it; used for a login's name only.
     pub email: Option<String>,
 }
 
@@ -83,28 +83,28 @@ pub struct LtiPerson {
 pub struct Message {
     /// The person.
     pub person: LtiPerson,
-    /// Where they come from.
+    /// The place from which the person comes.
     pub arrival: Arrival,
 }
 
-/// Where somebody comes from.
+/// The place from which a person comes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Arrival {
     /// The deployment.
     pub deployment: String,
     /// The course there.
     pub context: Context,
-    /// The link, unless one is to be made.
+    /// The link, unless one is requested.
     pub resource: Option<Resource>,
     /// The assignment that the link names.
     pub assignment: Option<String>,
-    /// The column of the grade book that belongs to the link, when scores may be sent there.
+    /// The column of the grade book that belongs to the link, if scores may be sent there.
     pub line_item: Option<String>,
-    /// Where columns can be made, when they may.
+    /// The address at which columns can be made, if that is permitted.
     pub line_items: Option<String>,
-    /// The place where the platform tells who is in its course.
+    /// The address of the course's list of members.
     pub memberships: Option<String>,
-    /// A link is to be chosen.
+    /// The request to choose a link.
     pub deep_linking: Option<DeepLinking>,
 }
 
@@ -131,10 +131,10 @@ pub struct Resource {
     pub title: Option<String>,
 }
 
-/// The wishes of a platform when a link is to be chosen (DL 4.4.1).
+/// The wishes of a platform when a link must be chosen (DL 4.4.1).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeepLinking {
-    /// The place where the answer goes.
+    /// The address for the answer.
     pub deep_link_return_url: String,
     /// The types of items that may be chosen.
     #[serde(default)]
@@ -197,14 +197,14 @@ struct Claims {
     email: Option<String>,
 }
 
-/// Returns the name of the key that a message says it is signed with.
+/// Returns the name of the key with which a message claims to be signed.
 pub(super) fn key_of(token: &str) -> Result<String, Rejection> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Rejection::Form)?;
     ensure(header.alg == Algorithm::RS256, Rejection::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Rejection::Form)
 }
 
-/// Reads the content of a message that this key signed; `nonce` is the digest of the one that was sent.
+/// Reads the content of a message that this key signed; `nonce` is the digest of the nonce that was sent.
 pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Rejection> {
     let settings = &platform.settings;
     let claims: Claims =
@@ -217,7 +217,8 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
             ErrorKind::MissingRequiredClaim(name) => Rejection::Content(format!("{name} is missing")),
             _ => Rejection::Content(error.to_string()),
         })?;
-    // SEC 5.1.3, 3 to 5: of several audiences, and where it is said at all, the authorized party is this service.
+    // SEC 5.1.3, 3 to 5: with several audiences, and if there is an authorized party at all, that party is this
+    // service.
     let several = matches!(&claims.aud, TokenAudience::Many(all) if all.len() > 1);
     if matches!(&claims.aud, TokenAudience::One(audience) if *audience != settings.client_id) {
         return Err(Rejection::Foreign("the audience"));
@@ -280,14 +281,14 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     })
 }
 
-/// Returns the name of somebody, as it is or of its parts.
+/// Returns the name of a person, whole or made of its parts.
 pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
     let spoken = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
     whole.or(Some(spoken)).filter(|name| !name.trim().is_empty())
 }
 
-/// Returns the role of somebody in the course by the platform's roles (LTI A.2.3). Their roles in the institution or
-/// system say nothing of the course, unless they administer all of it and nothing else is said.
+/// Returns the role of a person in the course by the platform's roles (LTI A.2.3). Roles in the institution or system
+/// give no role in the course, except that a sole role as its administrator does.
 pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, and still sent.
@@ -315,7 +316,7 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
 }
 
-/// Returns the answer to who asked for a link to be chosen: one link to an assignment (DL 4.5), as a signed token.
+/// Returns the answer to a request for a link: one link to an assignment (DL 4.5), as a signed token.
 ///
 /// # Errors
 /// An error of the database.
@@ -365,7 +366,7 @@ mod tests {
         assert_eq!(role(&[format!("{MEMBER}#Instructor"), format!("{MEMBER}#Learner")]), Some(LtiRole::Staff));
         assert_eq!(role(&[format!("{MEMBER}/Instructor#TeachingAssistant")]), Some(LtiRole::Staff));
         assert_eq!(role(&[format!("{MEMBER}#Administrator")]), Some(LtiRole::Staff));
-        // Teachers of the institution may learn something, too, and administrators take part as what they are here.
+        // Teachers of the institution may learn as well, and administrators have their role here.
         assert_eq!(role(&[format!("{PERSON}#Instructor"), format!("{MEMBER}#Learner")]), Some(LtiRole::Student));
         assert_eq!(role(&[format!("{PERSON}#Administrator"), format!("{MEMBER}#Learner")]), Some(LtiRole::Student));
         assert_eq!(role(&[format!("{PERSON}#Administrator")]), Some(LtiRole::Staff));

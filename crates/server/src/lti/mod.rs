@@ -1,6 +1,6 @@
 //! Learning platforms, by LTI 1.3 with its three services ("LTI Advantage"): people come from a platform's course to an
 //! assignment, a roster is read, and scores go back. This room knows the platforms' words: messages, keys, tokens,
-//! services. Who may do what by them is `domain`'s to say.
+//! services. `domain` decides who may do what by them.
 //!
 //! Written against the specifications of 1EdTech: LTI Core 1.3 ("LTI"), Security Framework 1.0 ("SEC"), Deep Linking
 //! 2.0 ("DL"), Names and Role Provisioning Services 2.0 ("NRPS"), and Assignment and Grade Services 2.0 ("AGS").
@@ -31,7 +31,7 @@ use trust::Trust;
 /// The parts that speaking with platforms takes.
 #[derive(Debug)]
 pub struct Lti {
-    /// Asks platforms for tokens and services.
+    /// The client for platforms' tokens and services.
     pub client: Client,
     trust: Trust,
 }
@@ -53,7 +53,7 @@ impl Lti {
         self.client.over_http
     }
 
-    /// Reads what a platform says about somebody who comes from it, and checks all of it (SEC 5.1.3).
+    /// Reads a platform's message about a person who comes from it, and checks all of it (SEC 5.1.3).
     ///
     /// # Errors
     /// Its fault.

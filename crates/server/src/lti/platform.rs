@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use url::Url;
 use utoipa::ToSchema;
 
-/// A platform's words about itself: all of them stand on its page for tools.
+/// A platform's addresses: all of them are on its page for tools.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlatformWish {
@@ -18,23 +18,23 @@ pub struct PlatformWish {
     /// The platform's name for this service ("client ID").
     #[schema(value_type = Word)]
     pub client_id: String,
-    /// Where it signs people in ("authentication request URL").
+    /// The address at which it signs people in ("authentication request URL").
     #[schema(value_type = HttpsUrl)]
     pub login_url: String,
-    /// Where it gives tokens for its services ("access token URL").
+    /// The address of tokens for its services ("access token URL").
     #[schema(value_type = HttpsUrl)]
     pub token_url: String,
-    /// Where its public keys are ("public keyset URL").
+    /// The address of its public keys ("public keyset URL").
     #[schema(value_type = HttpsUrl)]
     pub keys_url: String,
-    /// Whom tokens are asked of, where that is not the address for tokens.
+    /// The audience of requests for tokens, if it is not the address for tokens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
-    /// The deployments that people may come from. A new one is told by its number when somebody tries.
+    /// The deployments from which people may come. A rejected sign-in shows the number of a new one.
     #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
-    /// Further hosts on which its services may be, beside those of the addresses above.
+    /// Further hosts of its services, in addition to those of the addresses above.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<Host>, max_items = 50)]
     pub hosts: Vec<String>,
@@ -53,7 +53,7 @@ pub struct Platform {
     pub settings: PlatformWish,
 }
 
-/// Returns an address that may be asked: by HTTPS, of a host, with nothing hidden in it.
+/// Returns an address that may be called: by HTTPS, with a host, with nothing hidden in it.
 pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
@@ -118,8 +118,8 @@ impl Platform {
         own.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// Returns an address of one of its services. A message may name any; this service asks hosts alone that an
-    /// administrator named, so that nobody makes it ask others, or show them its token.
+    /// Returns an address of one of its services. A message may name any; this service calls only hosts that an
+    /// administrator named, so that a message can't make it call others, or show them its token.
     pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;
         self.places(over_http).contains(&place(&url)).then_some(url)

@@ -1,4 +1,4 @@
-//! The people in a platform's course, as the platform tells (NRPS 2).
+//! The people in a platform's course, as the platform lists them (NRPS 2).
 use super::{
     Client, LtiPerson, Platform, ServiceFault,
     client::{Ask, scope},
@@ -34,7 +34,7 @@ struct Member {
 /// Reads all pages of the members of a course.
 ///
 /// # Errors
-/// The platform's error, or what is wrong with its answer; nothing of it is told then.
+/// The platform's error, or what is wrong with its answer; then none of it is used.
 pub async fn fetch(
     client: &Client,
     database: &Database,

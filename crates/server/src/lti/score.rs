@@ -1,9 +1,9 @@
-//! The score that a platform is to know of somebody's work on an assignment (AGS 3.4), and when it is to be told.
+//! The score of a person's work on an assignment for a platform (AGS 3.4), and the time of sending it.
 //!
-//! Anybody who changes a grade puts a job into the queue, in the same transaction. The job holds no score: what is sent
-//! is read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows
-//! and stays the same however often it is sent; a platform keeps what is newer. So a message that comes twice, or late,
-//! changes nothing.
+//! Every change of a grade puts a job into the queue, in the same transaction. The job holds no score: the score is
+//! read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows and
+//! stays the same however often it is sent; a platform keeps the newest content. A message that arrives twice, or late,
+//! therefore changes nothing.
 use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
@@ -23,12 +23,12 @@ pub(super) struct Order {
     pub(super) link: i64,
     /// The student.
     pub(super) account: i64,
-    /// Also when the platform was told the same before.
+    /// Also when the platform got the same before.
     #[serde(default)]
     pub(super) again: bool,
 }
 
-/// The links of platforms that are to hear of students' submissions, with the students; what follows says of which.
+/// The links of platforms that get students' scores, with the students; the rest of the statement selects them.
 macro_rules! orders {
     ($which:literal) => {
         concat!(
@@ -46,7 +46,7 @@ macro_rules! orders {
     };
 }
 
-/// Notes that what counts for a submission has changed: the platforms that its owner came from are to be told.
+/// Notes that the counting result of a submission has changed: the platforms of its owner get the score.
 pub(crate) async fn note_change(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
     let rows = transaction.rows(orders!("submission.id = ?"), values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
@@ -59,13 +59,13 @@ pub(crate) async fn note_regrade(transaction: &mut Transaction, campaign: i64) -
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Has all scores of an assignment sent, with `again` also those that platforms know; how many these are.
+/// Sends all scores of an assignment, with `again` also those that platforms have, and returns their number.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
     let rows = transaction.rows(orders!("submission.assignment = ?"), values![assignment]).await?;
     enqueue(transaction, &rows, again).await
 }
 
-/// Has what an account is worth sent to a link that it just came by.
+/// Sends the score of an account to the link by which it just arrived.
 pub(crate) async fn arrived(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
     let statement = orders!("submission.account = ? AND platform_link.id = ?");
     let rows = transaction.rows(statement, values![account, link]).await?;
@@ -105,8 +105,7 @@ pub(super) struct Parcel {
     pub(super) stamp: i64,
 }
 
-/// Returns the score to send for an order; nothing when there is nothing to tell (any more). Gives the content its
-/// time.
+/// Returns the score to send for an order; `None` if there is nothing to send (any more). Gives the content its time.
 pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
     let statement =
         "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
@@ -150,9 +149,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
     })))
 }
 
-/// Returns the worth of somebody's work on an assignment: the most points of all their submissions. While there are
-/// none the platform is told that they come, and when the grader failed, that staff must look at it: never a zero that
-/// nobody earned. Of groups that are hidden and not published platforms hear nothing: they show what they hear.
+/// Returns the worth of a person's work on an assignment: the most points of all their submissions. Until there are
+/// points the platform learns that they follow, and if the grader failed, that staff must check it; it never gets an
+/// undeserved zero. Hidden, unpublished groups are left out, because platforms show all that they get.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
            mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
@@ -200,7 +199,7 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
     })
 }
 
-/// Notes that a platform was told, unless there is something newer by now.
+/// Notes that a platform has the score, unless there is something newer by now.
 pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
@@ -219,7 +218,7 @@ pub(super) async fn note_rejection(transaction: &mut Transaction, order: Order, 
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
-/// Notes that a job was tried too often; returns whether it was one of these.
+/// Notes that a job was tried too often; returns whether it was a job of this kind.
 pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
     let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
     note_rejection(transaction, order, fault).await?;
@@ -236,18 +235,18 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
     transaction.execute(statement, values![kind, text, order.account, order.link]).await.map(drop)
 }
 
-/// How far the column of a link is.
+/// The state of the column of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum ColumnState {
     /// The column is known.
     Known(String),
-    /// The caller is to have it made, and nobody else for so long.
+    /// The caller must have it made; others wait this long.
     Yours,
     /// Somebody else is at it.
     Theirs,
 }
 
-/// Returns how far the column of a link is; the caller that hears [`Column::Yours`] calls [`column_made`] soon.
+/// Returns the state of the column of a link; a caller that gets [`Column::Yours`] calls [`column_made`] soon.
 pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL
@@ -260,7 +259,7 @@ pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i6
     Ok(row.maybe_text("line_item")?.map_or(ColumnState::Theirs, ColumnState::Known))
 }
 
-/// Keeps the column that was found or made for a link; with nothing somebody else may try.
+/// Stores the column that was found or made for a link; `None` lets another caller try.
 pub(super) async fn keep_column(
     transaction: &mut Transaction,
     link: i64,

@@ -16,16 +16,16 @@ use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 use url::Url;
 
-/// Messages on their way at one time: a platform that hangs holds up a few only.
+/// The number of simultaneous messages: a platform that hangs delays only a few.
 const AT_ONE_TIME: usize = 4;
 
-/// How often somebody looks although nobody rang.
+/// The time between two searches without a notification.
 const LOOK_EVERY: Duration = Duration::from_secs(2);
 
-/// A platform that is away is asked so often, with waits up to an hour: more than a day.
+/// The number of tries while a platform does not answer, with waits up to an hour: more than a day in all.
 const PATIENT: u32 = 32;
 
-/// One that refuses may have been set up wrongly, and mended soon.
+/// The number of tries while a platform rejects scores: it may have been set up wrongly, and mended soon.
 const REFUSED: u32 = 6;
 
 /// A message takes no longer.
@@ -34,8 +34,8 @@ const MOST: Duration = Duration::from_secs(600);
 /// The longest wait between two tries.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 
-/// For so long, in milliseconds, nobody else has a column made; and so often, after such a time, others look whether it
-/// is there.
+/// The time, in milliseconds, in which no other caller has a column made; others check at the same interval whether it
+/// exists.
 const MAKING: i64 = 90_000;
 const LOOKS: u32 = 100;
 const LOOK_AGAIN: Duration = Duration::from_millis(250);
@@ -43,8 +43,8 @@ const LOOK_AGAIN: Duration = Duration::from_millis(250);
 /// The holder of the jobs.
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
 
-/// Sends scores until `stop` is cancelled. What was sent and not noted then is sent once more, and changes nothing.
-/// `look` finds jobs of servers that went silent; it is called before each claim.
+/// Sends scores until `stop` is canceled. A score that was sent and not noted then is sent once more, which changes
+/// nothing. `look` finds jobs of silent servers; it is called before each claim.
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
     notifier: Notifier,
@@ -115,7 +115,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
     let mut transaction = database.begin().await?;
     match sent {
         Ok(parcel) => {
-            // Anybody who lost the lease sent what somebody else sends, too: the same, at the same time.
+            // A sender that lost the lease sends the same as the next one, at the same time.
             if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
                 && let Some(parcel) = parcel
             {
@@ -143,7 +143,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
     transaction.commit().await
 }
 
-/// Sends what there is to send; what it was, or nothing.
+/// Sends the score that is due, and returns it; `None` if there is none.
 async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Parcel>, ServiceFault> {
     let order: Order = serde_json::from_str(&claim.payload)
         .map_err(|error| ServiceFault::Refused(format!("the job can't be read: {error}")))?;
@@ -211,7 +211,7 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
     Err(ServiceFault::Away { why: "the column of its grade book is still being made".to_owned(), after: None })
 }
 
-/// Has a platform tell of the column of a link, or make one (AGS 3.2).
+/// Gets the column of a link from a platform, or has the platform make one (AGS 3.2).
 async fn find_or_make(
     database: &Database,
     lti: &Lti,

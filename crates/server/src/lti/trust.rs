@@ -1,4 +1,4 @@
-//! The keys of platforms, as they publish them: kept for an hour, looked for again when one is not known, since
+//! The keys of platforms, as they publish them: kept for an hour, and read again when one is not known, because
 //! platforms change their keys.
 use super::{Client, Platform, Rejection, crypto::PublicKey};
 use serde::Deserialize;
@@ -8,13 +8,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// For so long keys are taken as they were.
+/// The time for which keys are used without reading them again.
 const FRESH: Duration = Duration::from_secs(3600);
 
-/// When the platform does not answer, those of before are good for a day.
+/// When the platform does not answer, earlier keys are valid for a day.
 const STALE: Duration = Duration::from_secs(24 * 3600);
 
-/// Unknown keys make the service ask once in so long: strangers may name any.
+/// The pause between two requests because of unknown keys: strangers may name any.
 const PAUSE: Duration = Duration::from_secs(5);
 
 /// The keys of platforms, by number.

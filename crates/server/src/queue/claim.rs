@@ -10,7 +10,7 @@ use crate::{
 pub struct Claimant<'a> {
     /// The worker's name.
     pub worker: &'a str,
-    /// The token that it came by, if any.
+    /// The token of its worker, if it has one.
     pub token: Option<i64>,
 }
 
@@ -43,8 +43,8 @@ pub async fn claim(
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
 }
 
-/// Returns whether something in a lane is to be looked at: a job whose turn has come, or one that somebody holds, and
-/// may have let go of. Costs a reader's transaction only.
+/// Returns whether something in a lane may be due: a job whose turn has come, or a held one whose lease may be over.
+/// Costs a reader's transaction only.
 ///
 /// # Errors
 /// An error of the database.

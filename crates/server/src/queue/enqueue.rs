@@ -1,17 +1,17 @@
-//! Putting jobs into the queue, and where they go.
+//! Puts jobs into the queue, with their ranks.
 //!
-//! A job's **rank** is a time: when it would come if everybody waited for their turn. For the first waiting job of a
+//! A job's **rank** is a time: the moment of its turn if all jobs waited in order. For the first waiting job of a
 //! student it is now; each further one comes [`Turn::Student`]'s spacing later, so that twenty uploads of one student
-//! do not hold up another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks
-//! do not change, and time goes on: so whatever waits is passed only by a bounded number of others, which is what
-//! ageing is for, and the place of a job in the queue is a count.
+//! do not delay another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks
+//! do not change while time advances, so only a bounded number of others pass a waiting job. No ageing is needed, and
+//! the place of a job in the queue is a count.
 use super::Lane;
 use crate::{
     db::{DbError, Transaction},
     values,
 };
 
-/// Whose turn a job uses up.
+/// The owner of the turn that a job uses up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn {
     /// A student's upload.
@@ -23,7 +23,7 @@ pub enum Turn {
 }
 
 impl Turn {
-    /// Returns how much later a further job of the same owner comes, in milliseconds.
+    /// Returns the delay of a further job of the same owner, in milliseconds.
     pub(crate) fn spacing_millis(self) -> i64 {
         match self {
             Self::Student(_) => 600_000,
@@ -32,7 +32,7 @@ impl Turn {
         }
     }
 
-    /// Returns how much later than an upload of the same moment its first job comes, in milliseconds.
+    /// Returns the delay of its first job after an upload of the same moment, in milliseconds.
     fn delay_millis(self) -> i64 {
         match self {
             Self::Student(_) | Self::Score(..) => 0,
@@ -42,8 +42,8 @@ impl Turn {
 
     /// Returns the rank of its next job.
     pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
-        // Two uploads of one student at the same moment may get the same rank: then the number decides, and nobody is
-        // hurt.
+        // Two uploads of one student at the same moment may get the same rank: then the number decides, which harms
+        // nobody.
         let statement = "SELECT max(rank) AS last, {now} AS now FROM job
             WHERE fair_key = ? AND state IN ('waiting', 'running')";
         let last = transaction.one(statement, values![self.key()]).await?;
@@ -67,15 +67,15 @@ pub struct NewJob<'a> {
     pub lane: Lane,
     /// The submission that it is about.
     pub submission: Option<i64>,
-    /// The regrade that it belongs to.
+    /// The regrade to which it belongs.
     pub campaign: Option<i64>,
-    /// Whose turn it uses up.
+    /// The owner of the turn that it uses up.
     pub turn: Turn,
     /// The task.
     pub payload: &'a str,
 }
 
-/// Enqueues a job within the caller's transaction and returns its number. Workers are told by
+/// Enqueues a job within the caller's transaction and returns its number. Workers are notified by
 /// [`super::Notifier::commit`].
 ///
 /// # Errors
@@ -92,8 +92,8 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
     row.int("id")
 }
 
-/// Returns whether a job of this turn waits, and goes on waiting until the caller's transaction ends: anybody who is
-/// about to change what it is about need not enqueue another one.
+/// Returns whether a job of this turn waits until the caller's transaction ends: a caller that changes its subject need
+/// not enqueue another one.
 ///
 /// # Errors
 /// An error of the database.

@@ -1,5 +1,4 @@
-//! The words that the holder of a lease may say. Everything is fenced: it counts only while the job runs under this
-//! very lease.
+//! The messages of a lease's holder. Each is fenced: it counts only while the job runs under this very lease.
 use super::{A_DAY, Lease, QueuePolicy, millis};
 use crate::{
     db::{DbError, Row, Transaction},
@@ -20,18 +19,18 @@ pub enum Completion {
     Late,
 }
 
-/// The result of a wish to give up.
+/// The result of a failed try.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
     /// The job waits again.
     Retried,
-    /// That was its last try; the caller writes what follows in the same transaction.
+    /// The job has no tries left; the caller writes the failure in the same transaction.
     Buried,
     /// The lease was lost before.
     Late,
 }
 
-/// How far a grading is, in scenes.
+/// The progress of a grading, in scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
     /// Scenes that have their verdict.
@@ -42,8 +41,8 @@ pub struct Progress {
     pub all: u32,
 }
 
-/// Extends a lease from now on, at most until a claim is so old, and keeps how far its holder is, if it says so; false
-/// when the lease was lost, and the work is for nothing.
+/// Extends a lease from now on, up to a greatest age of the claim, and stores the holder's progress, if it reports one.
+/// Returns false if the lease was lost, and the work is useless.
 ///
 /// # Errors
 /// An error of the database.
@@ -72,7 +71,7 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
     row.map(|row| row.text("payload")).transpose()
 }
 
-/// Ends a job. A lease that ran out but was given to nobody else still counts: the work is done.
+/// Ends a job. A lease that ran out but was given to no other worker still counts: the work is done.
 ///
 /// # Errors
 /// An error of the database.
@@ -89,7 +88,7 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
     Ok(if same.is_some() { Completion::Repeated } else { Completion::Late })
 }
 
-/// Gives a job back at no cost: its worker is asked to stop. False when the lease was lost.
+/// Returns a job at no cost, because its worker must stop. Returns false if the lease was lost.
 ///
 /// # Errors
 /// An error of the database.
@@ -101,7 +100,7 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
     Ok(changed > 0)
 }
 
-/// Says that this try came to nothing, and why. The next one comes no sooner than `least` from now.
+/// Reports that this try failed, and why. The next one comes no sooner than `least` from now.
 ///
 /// # Errors
 /// An error of the database.
@@ -122,7 +121,7 @@ pub async fn fail(
     lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }
 
-/// A try that came to nothing, with what its job has counted by now.
+/// A failed try, with the counts of its job by now.
 struct Loss<'a> {
     job: i64,
     failures: i64,

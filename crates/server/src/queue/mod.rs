@@ -1,13 +1,12 @@
-//! The queue of jobs, as statements within the caller's transaction: so a job is enqueued together with the upload that
-//! it is about, and finished together with the result that it came to.
+//! The queue of jobs, as statements within the caller's transaction: a job is enqueued together with its upload, and
+//! finished together with its result.
 //!
 //! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
-//! (**releases**) or says that it **failed**. Every claim has a number of its own, the attempt, and a key that only the
-//! worker knows: whatever a worker says is looked at together with them, so that one who is late changes nothing. A job
-//! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**:
-//! somebody is to look at it. A worker that died, or went silent, is no failure of its job; only a job that was there
-//! far more often than it may fail is buried, too. What a job is about, and what is written when it ends, is the
-//! concern of the rooms above.
+//! (**releases**) or reports that it **failed**. Every claim has a number of its own, the attempt, and a key that only
+//! the worker knows: every message of a worker is checked against them, so that a late worker changes nothing. A job
+//! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**: staff
+//! must check it. A worker that died, or fell silent, is no failure of its job. Only a job whose workers died far more
+//! often than it may fail is buried, too. The rooms above decide what a job does, and what is written when it ends.
 
 mod claim;
 mod enqueue;
@@ -33,7 +32,7 @@ use utoipa::ToSchema;
 pub enum Lane {
     /// Workers grade.
     Grading,
-    /// The service tells a learning platform about grades.
+    /// The service sends grades to a learning platform.
     Passback,
 }
 
@@ -50,10 +49,10 @@ impl Lane {
 /// The longest that a platform may have us wait.
 const A_DAY: Duration = Duration::from_secs(86_400);
 
-/// How patient the queue is.
+/// The patience of the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueuePolicy {
-    /// How long a worker may be silent.
+    /// The time for which a worker may be silent.
     pub lease: Duration,
     /// After this many failures a job is buried.
     pub max_failures: u32,
@@ -75,39 +74,40 @@ impl Default for QueuePolicy {
 }
 
 impl QueuePolicy {
-    /// Returns how often a worker renews its leases: two renewals may get lost.
+    /// Returns the time between two renewals of leases: two renewals may get lost.
     pub fn renew_every(&self) -> Duration {
         self.lease / 4
     }
 
-    /// Returns how often somebody looks for leases that ran out.
+    /// Returns the time between two searches for leases that ran out.
     pub fn tick_every(&self) -> Duration {
         self.lease / 8
     }
 
-    /// Returns the time without a look after which the database was away: nobody could renew either.
+    /// Returns the time without a search after which the database was away: then no worker could renew its lease,
+    /// either.
     fn outage(&self) -> Duration {
         self.lease / 2
     }
 
-    /// Returns how often a worker may die with a job. Far more often than a job may fail: a server in a crash loop,
-    /// whatever kills it, is no fault of what it is at.
+    /// Returns the number of times that a worker may die with a job. It is far more than a job may fail, because a
+    /// crash loop of a server is seldom the job's fault.
     fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }
 
-    /// Returns how long a job waits after its worker died: not long, since workers seldom die of what they do.
+    /// Returns the wait of a job after its worker died: it is short, because workers seldom die of their jobs.
     fn wait_after_death(&self, deaths: i64) -> Duration {
         self.first_wait * u32::try_from(deaths).unwrap_or(0).clamp(1, 10)
     }
 
-    /// Returns how long a job waits after its `failures`th failure, at most.
+    /// Returns the longest wait of a job after its `failures`th failure.
     fn longest(&self, failures: i64) -> Duration {
         let steps = u32::try_from(failures.max(1) - 1).unwrap_or(u32::MAX).min(16);
         self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
     }
 
-    /// Returns how long it waits this time: jobs that failed together do not come back together.
+    /// Returns the wait of this time: jobs that failed together do not return together.
     fn wait(&self, failures: i64) -> Duration {
         let longest = self.longest(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
@@ -137,9 +137,9 @@ pub struct Claim {
     pub submission: Option<i64>,
     /// The task, as it was enqueued.
     pub payload: String,
-    /// How often it failed before.
+    /// The number of its failures before.
     pub failures: i64,
-    /// How often its worker died before.
+    /// The number of times that its worker died before.
     pub deaths: i64,
 }
 

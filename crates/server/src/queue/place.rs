@@ -1,4 +1,4 @@
-//! Where a job stands, and how long it may take.
+//! The place of a job in the queue, and its expected time.
 use super::{Lane, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction},
@@ -6,16 +6,16 @@ use crate::{
 };
 use std::time::Duration;
 
-/// The number of finished jobs that the expected time looks back on.
+/// The number of finished jobs from which the expected time is computed.
 const RECENT: i64 = 50;
 
 /// A waiting job's place in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// How many jobs come before it.
+    /// The number of jobs before it.
     pub ahead: i64,
-    /// When its result may be expected, from the recent jobs and the slots of the workers that are alive; nothing when
-    /// there are none of either.
+    /// The expected time until its result, from the recent jobs and the slots of the workers that are alive; `None`
+    /// without jobs or workers.
     pub expected: Option<Duration>,
 }
 

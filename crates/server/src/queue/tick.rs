@@ -1,14 +1,14 @@
-//! Looking for workers that went silent.
+//! Finds silent workers.
 //!
-//! Everybody who is alive ticks, and leases run out only while somebody does: after a gap the database itself was away,
-//! nobody could renew, and every lease begins anew. So a restart of PostgreSQL costs no job a try.
+//! Every live process ticks, and leases run out only while one does. After a gap the database itself was away, no
+//! worker could renew, and every lease begins anew. Therefore a restart of PostgreSQL costs no job a try.
 use super::{Failure, QueuePolicy, hold::die, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
 
-/// The reason why a job whose lease ran out came to nothing.
+/// The reason why a job whose lease ran out failed.
 const SILENT: &str = "its worker went silent";
 
 /// The findings of a tick.
@@ -16,9 +16,9 @@ const SILENT: &str = "its worker went silent";
 pub struct Tick {
     /// The number of jobs that wait again.
     pub retried: usize,
-    /// Jobs that took their worker down too often; the caller writes what follows in the same transaction.
+    /// Jobs that took their worker down too often; the caller writes the failure in the same transaction.
     pub buried: Vec<BuriedJob>,
-    /// Whether leases began anew because nobody had ticked.
+    /// Whether leases began anew because no process had ticked.
     pub outage: bool,
 }
 
@@ -31,11 +31,11 @@ pub struct BuriedJob {
     pub attempt: i64,
     /// The last worker's name.
     pub worker: String,
-    /// The reason why the last try came to nothing.
+    /// The reason why the last try failed.
     pub fault: String,
 }
 
-/// Gives up on workers whose leases ran out, at most every [`QueuePolicy::tick_every`], by any caller.
+/// Ends leases of silent workers, at most every [`QueuePolicy::tick_every`], by any caller.
 ///
 /// # Errors
 /// An error of the database.

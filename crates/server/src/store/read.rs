@@ -10,22 +10,21 @@ use tokio::io::AsyncWriteExt;
 
 /// An artifact that is being read.
 pub struct OpenArtifact {
-    /// How large all of it is.
+    /// The size of the whole artifact.
     pub size: u64,
     /// The artifact's bytes.
     pub pieces: BoxStream<'static, Result<Bytes, StoreError>>,
 }
 
 impl Store {
-    /// Opens an artifact. Its last piece comes only if all are what they should be:
-    /// anybody who gets all bytes got the right ones. Who reads the first piece before saying anything knows that an
-    /// artifact of one piece is undamaged.
+    /// Opens an artifact. Its last piece comes only if all bytes are right: a reader that gets all bytes has the right
+    /// ones. A reader of the first piece knows that an artifact of one piece is undamaged.
     ///
     /// # Errors
     /// When there is none, it is damaged, or the store fails.
     pub async fn open(&self, digest: &Digest) -> Result<OpenArtifact, StoreError> {
         let mut found = self.objects.get(&digest.key(KEPT)).await;
-        // A file that is put aside may be named since, and comes back.
+        // A file that was put aside may be named since, and comes back.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
             found = self.objects.get(&digest.key(ASIDE)).await;
         }

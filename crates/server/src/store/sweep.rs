@@ -1,4 +1,4 @@
-//! Giving up what nobody names any more, in batches, so that memory is the same however many artifacts there are.
+//! Removes unnamed artifacts in batches, so that memory is the same for any number of artifacts.
 use super::{ASIDE, Digest, KEPT, Key, Store, StoreError, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
@@ -9,20 +9,21 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// Artifacts that are asked about at a time.
+/// The number of artifacts in one query.
 const BATCH: usize = 500;
 
 impl Store {
-    /// Gives up every artifact that is older than `least` and not named; how many these were. `named` tells which of
-    /// some digests are.
+    /// Removes every unnamed artifact that is older than `least`, and returns their number. `named` finds the named
+    /// ones of some digests.
     ///
-    /// Anybody who stores one of them at this very moment does not lose it: it is put aside first, where it is still
-    /// read, and looked at again there, at once and every time from then on. When it is named by then it comes back. It
-    /// goes only when it lay there unnamed for `least`: so a server that was started on the wrong database by mistake
-    /// has taken nothing away when somebody notices within that time.
+    /// An artifact that is stored at this very moment is not lost: it is put aside first, where it can still be read,
+    /// and checked again immediately and in every later run. If it is named by then it comes back. It is removed only
+    /// after it was there unnamed for `least`. A server that was started on the wrong database by mistake has therefore
+    /// removed nothing if this is noticed within that time.
     ///
     /// # Errors
-    /// When the store fails, or nobody can say what is named. What was put aside is looked at again the next time.
+    /// When the store fails, or the named digests can't be found. Artifacts that were put aside are checked again the
+    /// next time.
     pub async fn give_up<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
         &self,
         least: Duration,
@@ -66,7 +67,7 @@ impl Store {
         Ok(given_up)
     }
 
-    /// Returns every artifact, one after the other; one that is put aside meanwhile may come twice.
+    /// Returns every artifact, one after the other; an artifact that is put aside meanwhile may come twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
         self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
     }
@@ -92,7 +93,7 @@ impl Store {
     }
 }
 
-/// Has a file begin a new age; one that can't be touched keeps its own.
+/// Renews the age of a file; a file that can't be touched keeps its own.
 fn renew(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {

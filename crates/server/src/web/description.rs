@@ -1,4 +1,4 @@
-//! The description of the API (OpenAPI 3.1): what the handlers say of themselves, completed by what holds for all.
+//! The description of the API (OpenAPI 3.1): the handlers' descriptions, completed by what holds for all.
 use super::who::cookie_name;
 use crate::{
     problem::Problem,
@@ -46,13 +46,13 @@ const MOST: i64 = (1 << 53) - 1;
 )]
 struct Base;
 
-/// Answers that are given before any handler.
+/// Returns the answers that are given before any handler.
 pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
 
-/// Completes the description by what holds for every operation: how one signs in, what a name in an address looks like,
-/// and what an answer is where its status says all.
+/// Completes the description by what holds for every operation: how one signs in, the form of a name in an address, and
+/// answers that their status explains.
 pub(super) fn complete(api: &mut OpenApi) {
     let components = api.components.get_or_insert_default();
     for (name, scheme) in schemes() {
@@ -67,8 +67,8 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// Opens types that are extended: a type that takes no other fields can't be part of a larger one, which has them: the
-/// larger one has its fields as its own then.
+/// Opens types that are extended: a type that allows no other fields can't be part of a larger type with more; the
+/// larger type then has these fields as its own.
 fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()
@@ -128,7 +128,7 @@ fn name_parts(path: &str, operation: &mut Operation) {
 fn complete_operation(operation: &mut Operation) {
     let is_of = |tag: &str| operation.tags.iter().flatten().any(|of| of == tag);
     let required = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
-    // A handler that takes less than these says so itself.
+    // A handler that accepts less than these describes that itself.
     let security = match () {
         () if is_of("operations") => Vec::new(),
         () if is_of("workers") => vec![required("worker")],
@@ -205,7 +205,7 @@ fn bytes() -> RefOr<Schema> {
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// Returns the description of an answer that nobody describes.
+/// Returns the description of an answer without one.
 fn answer(status: &str) -> String {
     if status == "default" {
         return "Rejected or failed: what is wrong, and what to do about it".to_owned();

@@ -11,7 +11,7 @@ use axum::{
 };
 use futures_util::TryStreamExt;
 
-/// Answers with an artifact, unless the request's headers say that it is known.
+/// Answers with an artifact, unless the client knows it by its request's headers.
 pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
     let transfer = member.transfer()?;
     let tag = format!("\"{}\"", artifact.digest);
@@ -29,7 +29,7 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
 /// Returns all of an artifact.
 pub(super) fn whole(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
-        // The answer breaks off; anybody who gets it sees that bytes are missing.
+        // The answer breaks off, so that the client sees that bytes are missing.
         tracing::error!(%error, "an answer broke off");
         let _of_this_answer = &transfer;
     });

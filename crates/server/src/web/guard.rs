@@ -1,4 +1,4 @@
-//! The rules for every request: where it may come from, what answers say to browsers, and what is logged.
+//! The rules for every request: the sites that may send it, the headers of answers, and the log.
 use super::{input::ArrivalTime, who};
 use crate::{domain::App, problem::Problem};
 use axum::{
@@ -18,9 +18,9 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// sign-in of its own.
 const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
 
-/// Refuses what another site made a browser send. A token in a header can't be sent by one, so that requests with a
-/// token pass; all others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`,
-/// or `Origin` from browsers that don't say.
+/// Rejects what another site made a browser send. Another site can't send a token in a header, so that requests with a
+/// token pass. All others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`,
+/// or `Origin` from browsers without it.
 pub(super) async fn same_site(State(app): State<App>, request: Request, next: Next) -> Response {
     if is_harmless(request.method())
         || FROM_PLATFORMS.contains(&request.uri().path())
@@ -29,7 +29,7 @@ pub(super) async fn same_site(State(app): State<App>, request: Request, next: Ne
     {
         return next.run(request).await;
     }
-    // A program that forgot its token: nobody asks, whatever the site.
+    // A program that forgot its token: the request is not signed in, whatever the site.
     if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), app.is_secure()).session.is_none() {
         return Problem::not_signed_in().into_response();
     }
@@ -92,7 +92,7 @@ pub(super) async fn headers(State(app): State<App>, request: Request, next: Next
     response
 }
 
-/// Notes and counts what was asked by the route, never by the address: addresses may hold secrets.
+/// Logs and counts a request by the route, never by the address: addresses may hold secrets.
 pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     request.extensions_mut().insert(ArrivalTime(start));

@@ -1,4 +1,4 @@
-//! Reading requests, with answers that say what is wrong.
+//! Reads requests, with answers that name what is wrong.
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
@@ -16,7 +16,7 @@ pub(super) struct Body<T>(pub(super) T);
 /// A body of text.
 pub(super) struct PlainBody(pub(super) String);
 
-/// The fields of a form: a body, or the query of the address where a browser only asks.
+/// The fields of a form: a body, or the query of the address of a browser's GET request.
 pub(super) struct Fields<T>(pub(super) T);
 
 /// The names in an address; a part that it does not have is empty.
@@ -35,7 +35,7 @@ pub(super) struct AddressParts {
 /// The query of the address.
 pub(super) struct QueryInput<T>(pub(super) T);
 
-/// Where a list is to end, as a query.
+/// The end of a list, as a query gives it.
 #[derive(Deserialize)]
 pub(super) struct ListEnd {
     before: Option<u64>,
@@ -52,8 +52,8 @@ impl ListEnd {
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct SeenEvent {
-    /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
-    /// of what it changes.
+    /// The last event of the audit log that the sender has seen: with it a change is rejected if there is a later one
+    /// of the same thing.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
@@ -65,7 +65,7 @@ impl SeenEvent {
     }
 }
 
-/// Where a list is to begin, as a query.
+/// The begin of a list, as a query gives it.
 #[derive(Deserialize)]
 pub(super) struct ListStart {
     pub(super) after: Option<i64>,
@@ -76,15 +76,15 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
     value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
 }
 
-/// When a request's head came.
+/// The time when a request's head arrived.
 #[derive(Clone, Copy)]
 pub(super) struct ArrivalTime(pub(super) Instant);
 
-/// Stands in a request once it is known who asks: more of its body may be read then.
+/// A mark in a request whose sender is known: more of its body may be read then.
 #[derive(Clone, Copy)]
 pub(super) struct SignedIn;
 
-/// Returns the bytes of a body: few, while nobody knows who sends them.
+/// Returns the bytes of a body: few, until its sender is known.
 async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     let most = if request.extensions().get::<SignedIn>().is_some() { super::BODY } else { super::BODY_OF_NOBODY };
     let reading = async {
@@ -125,7 +125,7 @@ fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     serde_json::from_value(value).ok()
 }
 
-/// Reads the fields of an object whose kinds are looked at later.
+/// Reads the fields of an object whose kinds are checked later.
 pub(super) fn whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     let mut fields = Map::deserialize(deserializer)?;
     fields.values_mut().for_each(mend);

@@ -14,14 +14,14 @@ use std::{
     time::Duration,
 };
 
-/// How long an archive may be looked through, in seconds on the clock and of the processor, and with how much memory.
+/// The limits for examining an archive: seconds on the clock and of the processor, and memory.
 const SECONDS: u64 = 30;
 const MEMORY: u64 = 1 << 30;
 
 /// A program, in words.
 const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
 
-/// Returns the form of a file, and whether it can be that; a refusal names what the assignment takes.
+/// Returns the form of a file, if the file is valid; a rejection names the forms that the assignment accepts.
 pub(super) async fn examine(
     member: &Member,
     file: &Path,
@@ -63,8 +63,8 @@ pub(super) async fn unpack(member: &Member, archive: &Path, folder: &Path) -> Re
     in_turn(member, archive, &["--into", folder]).await?.map(drop).map_err(Problem::no_suite)
 }
 
-/// Has this program look through a file when it is the sender's turn. Refused files count: an account
-/// that sends many waits.
+/// Examines a file by this program when it is the sender's turn. Rejected files count: an account that sends many
+/// waits.
 async fn in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
     let _turn = member.archive_turn().await?;
     // The same program, also where another has taken its place meanwhile.

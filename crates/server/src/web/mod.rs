@@ -21,8 +21,8 @@ use utoipa_axum::router::OpenApiRouter;
 /// The largest body of a request that is no upload.
 const BODY: usize = 1 << 20;
 
-/// The limit for somebody who is not signed in: a password, a token, or a learning platform's word. Thousands of them
-/// may send one at the same time.
+/// The limit before sign-in: a password, a token, or a learning platform's message. Thousands may be sent at the same
+/// time.
 const BODY_OF_NOBODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
@@ -49,7 +49,7 @@ pub fn router(app: App) -> Router {
         .merge(pages)
         .fallback(pages::missing)
         .method_not_allowed_fallback(pages::wrong_method)
-        // Anybody who reads a body counts it: what is allowed differs.
+        // Every reader of a body counts it: the limits differ.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::same_site))
         .layer(middleware::from_fn(pages::show_others))

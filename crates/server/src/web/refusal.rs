@@ -1,4 +1,4 @@
-//! Refusals as answers.
+//! Rejections as answers.
 use crate::problem::Problem;
 use axum::{
     http::{HeaderValue, StatusCode, header},

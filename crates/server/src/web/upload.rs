@@ -24,19 +24,19 @@ use std::{
 use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
-/// The longest that an upload may take beside its fair time, in pauses that a body may make.
+/// The longest time that an upload may take in addition to its fair time, in pauses of its body.
 const PAUSES: u32 = 20;
 
-/// Returns how long an upload of this size may take to count as come at its beginning: half a minute, and a second for
-/// each 32 KiB. So nobody begins one before the due date to write it later.
+/// Returns the time in which an upload of this size must arrive to count as arrived at its beginning: half a minute,
+/// and a second for each 32 KiB. This prevents that an upload begins before the due date and is written later.
 pub(super) fn fair_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
 
-/// The bytes of a form beside its file: boundaries, names, short fields, and what is read of a connection at one time.
+/// The bytes of a form around its file: boundaries, names, short fields, and what is read of a connection at one time.
 const BESIDE: u64 = 1024 * 1024;
 
-/// Counts what came of a form and was not taken by anybody: that lies in memory, and a form may be nothing else.
+/// Counts the bytes of a form that arrived and were not taken: they are in memory, and a form may have nothing else.
 #[derive(Clone, Default)]
 struct UntakenBytes(Arc<AtomicU64>);
 
@@ -51,19 +51,19 @@ impl UntakenBytes {
     }
 }
 
-/// A file that came.
+/// A file that arrived.
 pub(super) struct ReceivedFile {
-    /// The place where it lies until it is stored.
+    /// The place of the file until it is stored.
     pub(super) file: TempPath,
     /// The sender's name for it.
     pub(super) name: Option<String>,
-    /// The upload's form (a program, sources, traces), where the request said so.
+    /// The upload's form (a program, sources, traces), if the request named it.
     pub(super) form: Option<String>,
     /// The sender's name for this upload.
     pub(super) key: Option<String>,
 }
 
-/// Where uploads are put, and how long they may pause.
+/// The folder for uploads, and their longest pause.
 struct Place<'a> {
     incoming: &'a Path,
     patience: Duration,
@@ -77,8 +77,8 @@ pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Re
     receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
-/// Refuses an upload before anything of it is stored. What comes all the same is read and forgotten: many a program
-/// looks for the answer only when it has sent everything, and finds a broken connection instead.
+/// Rejects an upload before anything of it is stored. Its body is read and dropped: many programs read the answer only
+/// when they have sent everything, and would find a broken connection instead.
 pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
@@ -96,9 +96,9 @@ pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Prob
     problem
 }
 
-/// Receives a form with an upload that came in pieces of this many bytes, into a folder that is empty again afterwards:
-/// what the fuzzer of uploads, and tests, hand bytes to. The size of the file, and what the form says: its name, its
-/// kind, and its key.
+/// Receives a form with an upload that comes in pieces of this many bytes, into a folder that is empty again
+/// afterwards; the fuzzer of uploads, and tests, call it. Returns the size of the file, and the form's name, kind and
+/// key.
 ///
 /// # Errors
 /// The fault of the form.
@@ -125,7 +125,7 @@ pub(super) fn is_form(request: &Request) -> bool {
     kind.is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"))
 }
 
-/// Returns how large a request says that its body is.
+/// Returns the size of the body that a request announces.
 pub(super) fn announced(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
@@ -166,7 +166,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
-    // So does a browser send a field in which nobody chose one.
+    // A browser sends an empty field when no file was chosen.
     if name.as_deref() == Some("") && std::fs::metadata(&file)?.len() == 0 {
         return Err(Problem::invalid("no file was chosen"));
     }
@@ -225,7 +225,7 @@ async fn to_file<E: Display>(
     Ok(path)
 }
 
-/// Returns a name as reports and messages may show it: what a browser says it is called, made harmless.
+/// Returns a name that is safe in reports and messages: the browser's name, made harmless.
 pub(super) fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -234,16 +234,16 @@ pub(super) fn plain_name(name: &str) -> String {
     if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
 }
 
-/// Returns whether a file that begins so is a program.
+/// Returns whether a file with this beginning is a program.
 pub(super) fn is_program(start: &[u8]) -> bool {
     FileKind::from_start(start) == FileKind::Program
 }
 
-/// Returns the form of an archive, and whether it can be that: sources must hold the `program`, where nothing builds
+/// Returns the form of an archive, if the archive is valid: sources must hold the `program`, unless the suite builds
 /// it. It runs in a process of its own (`web::look`).
 ///
 /// # Errors
-/// The reason why it is refused.
+/// The reason why it is rejected.
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;

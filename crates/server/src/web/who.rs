@@ -1,4 +1,5 @@
-//! The roles of requests: a handler says by the type of its argument whom it serves, and is not called for others.
+//! The roles of requests: the type of a handler's argument names the role that it serves, and the handler is not called
+//! for others.
 use super::input::SignedIn;
 use crate::{
     domain::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
@@ -15,18 +16,18 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-/// Where a request's session is noted when it lasts longer from now on: the browser is to keep its cookie as long.
+/// Holds a request's session that lasts longer from now on: the browser must keep its cookie as long.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RenewedSession(Arc<OnceLock<String>>);
 
 impl RenewedSession {
-    /// Returns the cookie's content, if it is to be sent again.
+    /// Returns the cookie's content, if it must be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }
 }
 
-/// Returns the session's cookie: by HTTPS one that no other host and no script can set or read.
+/// Returns the name of the session's cookie: over HTTPS one that no other host and no script can set or read.
 pub(super) fn cookie_name(secure: bool) -> &'static str {
     if secure { "__Host-fosssim" } else { "fosssim" }
 }
@@ -54,7 +55,7 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
     let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
-    // A request that came past the proxy.
+    // A request that bypassed the proxy.
     let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
     let address = said.or_else(peer).map(|address| address.to_canonical());
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
@@ -66,7 +67,7 @@ struct InCourse {
     course: String,
 }
 
-/// Roles, and how each is told from the head of a request.
+/// Roles, and the way in which each is recognized by the head of a request.
 macro_rules! roles {
     ($($role:ty: |$parts:ident, $app:ident| $tell:expr;)*) => {
         $(impl FromRequestParts<App> for $role {

@@ -1,5 +1,5 @@
 //! A child process that never outlives its owner: it leads a process group that is killed as a whole, and the kernel
-//! kills it when this process dies, however that happens. A [`guard`](super::guard) stands between the two.
+//! kills it when this process dies, however that happens. A [`guard`](super::guard) is between the two.
 use super::guard;
 use std::{
     io,
@@ -21,7 +21,7 @@ pub(super) enum End {
 /// A running child. Dropped, it is killed.
 #[derive(Debug)]
 pub(super) struct Child {
-    /// The group's number while it may be used: the leader is not reaped yet, so nobody else can have it.
+    /// The group's number while it may be used: the leader is not reaped yet, so no other process can have it.
     group: Arc<Mutex<Option<libc::pid_t>>>,
     end: watch::Receiver<Option<End>>,
 }
@@ -49,7 +49,7 @@ impl Child {
     pub(super) fn start(mut command: Command) -> io::Result<Self> {
         command.stdin(Stdio::null()).stdout(Stdio::null()).process_group(0);
         let parent = std::process::id();
-        // SAFETY: what is called between fork and exec may be called there.
+        // SAFETY: the called functions may be called between fork and exec.
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
@@ -76,7 +76,7 @@ impl Child {
             wait_without_reaping(number);
             let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
             *known = None;
-            // SAFETY: the leader is not reaped yet, so the group is still this one.
+            // SAFETY: the leader is not reaped yet, so the group is still the same.
             unsafe { libc::kill(-number, libc::SIGKILL) };
             let end = match child.wait() {
                 Ok(status) => match (status.code(), status.signal()) {
@@ -96,12 +96,12 @@ impl Child {
         let mut end = self.end.clone();
         match end.wait_for(Option::is_some).await {
             Ok(end) => (*end).unwrap_or(End::Signal(0)),
-            // The waiting thread is gone.
+            // The waiting thread has ended.
             Err(_) => End::Signal(0),
         }
     }
 
-    /// Asks it to stop.
+    /// Requests that it stops.
     pub(super) fn interrupt(&self) {
         self.signal(libc::SIGTERM, false);
     }
@@ -125,8 +125,8 @@ impl Drop for Child {
     }
 }
 
-/// Waits until a child has ended, and leaves its number taken. A child that was stopped goes on: somebody may wait for
-/// it for ever.
+/// Waits until a child has ended, and leaves its number taken. A stopped child is continued; otherwise the wait might
+/// never end.
 fn wait_without_reaping(number: libc::pid_t) {
     let wait = |options| {
         // SAFETY: a zeroed siginfo_t is valid, and the call writes it only.
@@ -139,7 +139,7 @@ fn wait_without_reaping(number: libc::pid_t) {
     loop {
         match wait(libc::WEXITED | libc::WSTOPPED | libc::WNOWAIT) {
             (0, libc::CLD_STOPPED) => {
-                // Heard of; the next wait is for what comes then.
+                // The end is noted; the next wait is for later ones.
                 wait(libc::WSTOPPED | libc::WNOHANG);
                 // SAFETY: the child is not reaped.
                 unsafe { libc::kill(number, libc::SIGCONT) };
@@ -193,7 +193,7 @@ mod tests {
         let grandchild: i32 = std::fs::read_to_string(&file).expect("a file").trim().parse().expect("a number");
         child.kill();
         assert_eq!(child.ended().await, End::Signal(libc::SIGKILL));
-        // It is gone, or a zombie that waits for init: in any case it does not run. Dying takes it a moment.
+        // It has ended, or is a zombie that waits for init; it does not run. Dying takes a moment.
         let start = std::time::Instant::now();
         loop {
             let state = std::fs::read_to_string(format!("/proc/{grandchild}/stat")).unwrap_or_default();

@@ -23,11 +23,11 @@ pub struct NewFile {
     pub name: String,
     /// The file's media type.
     pub media_type: String,
-    /// The place where it lies.
+    /// The place of the file.
     pub path: PathBuf,
 }
 
-/// The file in its folder in which a grader may say how far it is, as `3/85`: scenes with a verdict, all scenes.
+/// The file in its folder into which a grader may write its progress, as `3/85`: scenes with a verdict, all scenes.
 pub const PROGRESS: &str = "progress";
 
 /// The reason why there is no verdict. Never the submission's fault.
@@ -36,7 +36,7 @@ pub enum GraderFault {
     /// Something failed; another try may help.
     #[error("{0}")]
     Failed(String),
-    /// Somebody asked to stop.
+    /// The grading was stopped on request.
     #[error("the grading was stopped")]
     Stopped,
 }
@@ -46,11 +46,11 @@ pub trait Grader: Clone + Send + Sync + 'static {
     /// Proves that it can grade here and now, and may use the empty folder as it likes.
     ///
     /// # Errors
-    /// The reason why it can't; said to staff, never to students.
+    /// The reason why it can't; shown to staff, never to students.
     fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
-    /// Grades the submission that lies at `submission`, by the suite whose archive lies at `suite` if it is one, and
-    /// may use `folder` as it likes. When `stop` is cancelled it ends soon, and nothing that it started goes on.
+    /// Grades the submission at `submission`, by the suite whose archive is at `suite` if there is one, and may use
+    /// `folder` freely. When `stop` is canceled it ends soon, with all that it started.
     fn grade(
         &self,
         task: &Task,

@@ -18,7 +18,7 @@ static GRADER: AtomicI32 = AtomicI32::new(0);
 pub(super) unsafe fn run_guard() -> io::Result<()> {
     // SAFETY: these calls may be made between fork and exec, and take no memory of ours but the text.
     unsafe {
-        // When memory runs short the grader goes first, and not the worker.
+        // When memory runs short the grader is killed first, and not the worker.
         let file = libc::open(c"/proc/self/oom_score_adj".as_ptr(), libc::O_WRONLY | libc::O_CLOEXEC);
         if file >= 0 {
             libc::write(file, c"800".as_ptr().cast(), 3);
@@ -37,7 +37,7 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
                 if libc::getppid() != guard {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
-                // Until the guard has closed its files, and keeps nobody waiting whatever becomes of it.
+                // Until the guard has closed its files, so that its end delays no other process.
                 libc::close(ready[1]);
                 libc::read(ready[0], ready.as_mut_ptr().cast(), 1);
                 libc::close(ready[0]);
@@ -59,8 +59,8 @@ unsafe fn watch(grader: libc::pid_t) -> ! {
     GRADER.store(grader, Ordering::Relaxed);
     // SAFETY: system calls on numbers, and structures that are zeroed first.
     unsafe {
-        // Handlers of the worker would speak to it by files that are closed here. What says that the grader has
-        // started is one of them: the worker waits until nobody holds it.
+        // Handlers of the worker would write to files that are closed here. The sign that the grader has started is one
+        // of these files: the worker waits until no process holds it.
         for signal in [libc::SIGINT, libc::SIGHUP, libc::SIGQUIT, libc::SIGCHLD, libc::SIGUSR1, libc::SIGUSR2] {
             libc::signal(signal, libc::SIG_DFL);
         }

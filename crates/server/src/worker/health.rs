@@ -1,8 +1,8 @@
-//! Whether a worker can grade. One whose grader is broken fails at once and is free again at once: it would eat the
-//! queue.
+//! Checks whether a worker can grade. A worker with a broken grader fails immediately and is free again immediately: it
+//! would take all jobs of the queue.
 //!
-//! So a worker proves itself before its first claim, and again after every fault. While it can't, it claims nothing,
-//! and what it holds goes to another worker without having cost a try.
+//! Therefore a worker proves itself before its first claim, and again after every fault. Until it can, it claims
+//! nothing, and its jobs move to another worker without the loss of a try.
 use super::Grader;
 use std::{
     path::{Path, PathBuf},
@@ -23,10 +23,10 @@ const LONGEST_WAIT: Duration = Duration::from_secs(60);
 #[derive(Debug, Clone)]
 pub(super) struct Health<G> {
     pub(super) grader: G,
-    /// Where jobs and proofs get their folders.
+    /// The folder in which jobs and proofs get their folders.
     pub(super) folder: PathBuf,
     is_proven: Arc<AtomicBool>,
-    /// Held by the slot that asks for proofs until there is one; the others wait for it.
+    /// The lock of the slot that requests proofs until there is one; the others wait for it.
     asking: Arc<Mutex<()>>,
     /// Held while there is a proof.
     proving: Arc<Mutex<()>>,
@@ -37,7 +37,7 @@ pub(super) struct Health<G> {
 }
 
 impl<G: Grader> Health<G> {
-    /// Creates the health of a worker with this grader, which may make folders in this one.
+    /// Creates the health of a worker with this grader, which may make folders in this folder.
     pub(super) fn new(grader: G, folder: PathBuf) -> Self {
         Self {
             grader,
@@ -55,7 +55,7 @@ impl<G: Grader> Health<G> {
         self.is_proven.load(Ordering::Acquire)
     }
 
-    /// Returns why it may not, as far as a proof has told.
+    /// Returns why it may not grade, by its last proof.
     pub(super) fn fault(&self) -> Option<String> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -71,7 +71,7 @@ impl<G: Grader> Health<G> {
         if self.is_proven() {
             return !stop.is_cancelled();
         }
-        // One slot asks, and asks again; the others wait until it knows.
+        // One slot requests proofs until it knows; the others wait.
         let asking = tokio::select! {
             asking = self.asking.lock() => asking,
             () = stop.cancelled() => return false,

@@ -1,4 +1,4 @@
-//! The source of workers that hold the database themselves: those within the server, and those of who wants it so.
+//! The source of workers that hold the database themselves: those within the server, and separate ones on request.
 use super::{GRACE, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
@@ -12,7 +12,7 @@ use crate::{
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
 
-/// How often a worker looks although nobody rang.
+/// The time between two searches without a notification.
 const LOOK_EVERY: Duration = Duration::from_secs(1);
 
 /// The time that a job may take besides its grading, at least.
@@ -24,13 +24,13 @@ pub struct LocalSource {
     database: Database,
     store: Store,
     notifier: Notifier,
-    /// The notifications that this copy has heard.
+    /// The notifications that this copy has received.
     subscription: Mutex<Subscription>,
     policy: QueuePolicy,
     worker: String,
     /// The worker's version.
     version: String,
-    /// The token that the worker came by, if any.
+    /// The token of the worker, if it has one.
     token: Option<i64>,
 }
 
@@ -73,7 +73,7 @@ impl LocalSource {
         }
     }
 
-    /// Sets the token by which the worker came.
+    /// Sets the token of the worker.
     pub fn with_token(self, token: i64) -> Self {
         Self { token: Some(token), ..self }
     }
@@ -84,7 +84,7 @@ impl LocalSource {
     }
 }
 
-/// Returns the longest time of a job: that of its grading, and more for what is fetched, stored and waited for.
+/// Returns the longest time of a job: that of its grading, and more for transfers, storage and waits.
 fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
     Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
 }

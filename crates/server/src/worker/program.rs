@@ -19,13 +19,13 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// The longest time that the grader may take to write its reports after it was asked to stop.
+/// The longest time that the grader may take to write its reports after it was told to stop.
 pub(super) const GRACE: Duration = Duration::from_secs(20);
 
-/// How much of the grader's messages is kept for the administrator.
+/// The length of the grader's messages that is kept for the administrator.
 const MESSAGE: usize = 2000;
 
-/// The page that tells staff everything, whatever students may know.
+/// The page that shows staff everything, whatever students may know.
 pub const STAFF_PAGE: &str = "staff.html";
 
 /// The page that students see when hidden groups are published; only where there are any.
@@ -40,7 +40,7 @@ pub const REPORTS: [(&str, &str, &str); 5] = [
     ("", PUBLISHED_PAGE, "text/html; charset=utf-8"),
 ];
 
-/// The program `fosssim-oracle`, or one that does as it does.
+/// The program `fosssim-oracle`, or one that behaves like it.
 #[derive(Debug, Clone)]
 pub struct Program {
     path: PathBuf,
@@ -67,7 +67,7 @@ impl Program {
             Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
-            // The server could not ask the grader for its default, and leaves it to it.
+            // The server could not ask the grader for its default, and lets it choose.
             Suite::Named(name) if name.is_empty() => {}
             Suite::Named(name) => drop(command.arg("--suite").arg(name)),
             Suite::Archive(_) => drop(command.arg("--suite").arg(folder.join("suite/suite.toml"))),
@@ -78,8 +78,8 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // All reports tell as much as students may know. Hidden groups are in all but the page: staff reads them, and
-        // the server keeps them from students.
+        // All reports show as much as students may know. Hidden groups are in all but the page: staff reads them, and
+        // the server hides them from students.
         command.args(["--for", "student"]);
         for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
@@ -94,7 +94,7 @@ impl Program {
     }
 }
 
-/// The scene of a proof: one of the grader's own, and small.
+/// The scene of a proof: a small one of the grader's own.
 const PROOF: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
 
 /// The number of bytes that a folder must take for jobs to work in it.
@@ -154,7 +154,7 @@ impl Program {
     }
 }
 
-/// Lets a command run in a folder, with nothing of the server's surroundings, which may hold secrets.
+/// Runs a command in a folder, without the server's environment, which may hold secrets.
 pub(super) fn isolate(command: &mut Command, folder: &Path) {
     command.env_clear().current_dir(folder);
     for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
@@ -166,8 +166,8 @@ pub(super) fn isolate(command: &mut Command, folder: &Path) {
 
 impl Grader for Program {
     /// Proves that the grader works: there is room to work in; the reference's own trace of a scene is accepted; a
-    /// program that does nothing is run in the sandbox and is not accepted. A grader that records no traces, as those
-    /// of tests, is only asked to start.
+    /// program that does nothing runs in the sandbox and is not accepted. A grader that records no traces, as in tests,
+    /// is only started.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
         fs::write(&room, vec![1; ROOM]).map_err(|error| format!("no room to work in: {error}"))?;
@@ -206,7 +206,7 @@ impl Grader for Program {
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
         }
-        // Before it runs: somebody may install another one meanwhile.
+        // Read before it runs: another grader may be installed meanwhile.
         let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
@@ -240,7 +240,7 @@ impl Grader for Program {
     }
 }
 
-/// Returns how a grader ended, and whether that was because its time was over.
+/// Returns how a grader ended, and whether its time was over.
 async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
     let (mut left, mut is_late) = (most, false);
     loop {
@@ -267,8 +267,8 @@ fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
-/// Unpacks an archive into a new folder, and returns the folder at its top and that folder. It was looked through when
-/// it came, so that it can be.
+/// Unpacks an archive into a new folder, and returns that folder and the folder at its top. The archive was checked
+/// when it arrived.
 async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), GraderFault> {
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
@@ -295,7 +295,7 @@ fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<Pat
     Ok(program)
 }
 
-/// Returns the end of what the grader said, on one line.
+/// Returns the end of the grader's output, on one line.
 fn last_words(file: &Path) -> String {
     let bytes = fs::read(file).unwrap_or_default();
     let from = bytes.len().saturating_sub(MESSAGE);

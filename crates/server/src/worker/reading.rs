@@ -1,9 +1,9 @@
-//! The grader's words about a submission, as far as the service understands them; the rest goes to people.
+//! The part of the grader's words about a submission that the service understands; people read the rest.
 use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 
 /// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader
-/// may be older; what is read here was the same in both.
+/// may be older; the parts that are read here are the same in both.
 const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
 /// Reads a grade. Numbers keep their digits: the text that the grader wrote is what counts.

@@ -18,7 +18,7 @@ use std::{
 };
 use ureq::{Agent, Body, RequestBuilder, http::Response};
 
-/// How often a worker asks whether there is a job.
+/// The time between two requests for a job.
 const ASK_EVERY: Duration = Duration::from_secs(1);
 
 /// The longest time that the server may take to answer, and to begin and go on with a file.
@@ -51,9 +51,9 @@ impl RemoteSource {
     /// Creates a source at a server's address, for a worker of this name.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
-            // A status is looked at here, with the server's words about it.
+            // The status is checked here, with the server's words about it.
             .http_status_as_error(false)
-            // The token goes to this server and nowhere else.
+            // The token is sent to this server only.
             .max_redirects(0)
             .timeout_connect(Some(PATIENCE))
             .timeout_recv_response(Some(PATIENCE))
@@ -70,7 +70,7 @@ impl RemoteSource {
         }))
     }
 
-    /// Asks, away from the threads that must not wait.
+    /// Calls the server, away from the threads that must not wait.
     async fn call<T: Send + 'static>(
         &self,
         ask: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
@@ -111,7 +111,7 @@ impl Parts {
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
-    /// Returns a request with what says who asks, and for which job.
+    /// Returns a request with the worker's identity and the job.
     fn signed<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
         let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
         match lease {
@@ -127,7 +127,7 @@ impl Parts {
     }
 }
 
-/// Returns the meaning of a status: a server that is away for a moment, or one that will never agree.
+/// Returns the meaning of a status: a server that does not answer for a moment, or one that rejects for good.
 fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
@@ -136,7 +136,7 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().unwrap_or_default();
     let problem: serde_json::Value = serde_json::from_slice(&body).unwrap_or_default();
     let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
-    // Our own mistakes, and what is not there, stay so; a proxy's troubles pass.
+    // Our own mistakes, and missing things, are permanent; a proxy's troubles pass.
     match status.as_u16() {
         401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(SourceError::Dismissed),
         400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Refused(text)),

@@ -16,17 +16,17 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// The time that a slot waits for a job before it asks again.
+/// The time that a slot waits for a job before it requests one again.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 /// The wait after the source did not answer; it doubles up to the longest.
 const FIRST_WAIT: Duration = Duration::from_millis(200);
 const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
-/// How often a source that is away is asked again for the parts of a job.
+/// The number of tries to get the parts of a job while the source does not answer.
 const PATIENT_TRIES: u32 = 5;
 
-/// How often the source may hear how far a grading is.
+/// The time between two reports of a grading's progress.
 const TELL_EVERY: Duration = Duration::from_secs(1);
 
 /// No suite has more scenes.
@@ -35,8 +35,8 @@ const MANY_SCENES: u32 = 1_000_000;
 /// The folder of a job in which its grader works.
 const WORK: &str = "work";
 
-/// Does jobs, one in each slot, until `stop` is cancelled; then gives back what it holds, and ends. Jobs get folders in
-/// this one, which is emptied by who owns it, not by the slots.
+/// Does jobs, one in each slot, until `stop` is canceled; then gives back what it holds, and ends. Jobs get folders in
+/// this one, which its owner empties, not the slots.
 ///
 /// # Errors
 /// When the source does not know the worker any more: what it holds counts for nothing.
@@ -105,13 +105,13 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
     }
 }
 
-/// The way a job ended, to be told to the source.
+/// The way in which a job ended, for the source.
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
     /// The worker is to stop.
     GivenBack,
-    /// The lease is lost: there is nobody to tell.
+    /// The lease is lost: there is nothing to report.
     Lost,
 }
 
@@ -141,7 +141,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             match ending {
                 Some(ending) => ending,
                 None => {
-                    // The grader ends its children before anything is told or removed.
+                    // The grader ends its children before anything is reported or removed.
                     halt.cancel();
                     match grading.await {
                         // It was done at that very moment.
@@ -165,7 +165,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
     keeping.abort();
 }
 
-/// Renews a lease until it is lost: as often as the source asks for, and when the grading has come further.
+/// Renews a lease until it is lost: as often as the source requests, and when the grading has advanced.
 async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
     let mut renewed = tokio::time::Instant::now();
     let mut told = None;
@@ -183,13 +183,13 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
                 return lost.cancel();
             }
-            // The work goes on: whether it counts is decided when it is finished.
+            // The work continues: the source decides at its end whether it counts.
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
         }
     }
 }
 
-/// Returns how far the grading is that writes this file: `3/85`.
+/// Returns the progress of the grading that writes this file: `3/85`.
 fn progress_in(file: &Path) -> Option<Progress> {
     let mut text = String::new();
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
@@ -204,7 +204,7 @@ impl From<SourceError> for GraderFault {
     }
 }
 
-/// Fetches what the job needs, grades, and stores what came of it.
+/// Fetches what the job needs, grades, and stores the result.
 async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
@@ -235,7 +235,7 @@ async fn attempt<D: JobSource, G: Grader>(
     Ok(Outcome { seconds, files, ..graded.outcome })
 }
 
-/// Asks a source that is away a few times more: a hiccup of the network costs no try.
+/// Repeats a request to a source that does not answer: a short fault of the network costs no try.
 async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
     for _ in 0..PATIENT_TRIES {
@@ -249,8 +249,8 @@ async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn()
     ask().await
 }
 
-/// Tells the source, as often as it takes: a result that is lost would have to be made again. A worker that is to stop
-/// says it a few times only; then the lease runs out.
+/// Reports the result to the source, with as many tries as it takes: a lost result would have to be made again. A
+/// worker that must stop tries a few times only; then the lease runs out.
 async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;

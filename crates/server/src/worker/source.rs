@@ -1,4 +1,4 @@
-//! Where workers get their jobs and bring their results: the database itself, or a server over HTTP.
+//! The source of workers' jobs, which also takes their results: the database itself, or a server over HTTP.
 use crate::{
     queue::{Lease, Progress},
     store::{Artifact, Digest},
@@ -22,30 +22,30 @@ pub enum SourceError {
     Dismissed,
 }
 
-/// Where workers get their jobs and bring their results.
+/// The source of workers' jobs, which also takes their results.
 pub trait JobSource: Clone + Send + Sync + 'static {
-    /// Returns the next job, if there is one. Not to be interrupted: the source might have given away a job that nobody
-    /// gets.
+    /// Returns the next job, if there is one. The call must not be interrupted: otherwise the source might give away a
+    /// job that no worker gets.
     fn claim(&self) -> impl Future<Output = Result<Option<ClaimedJob>, SourceError>> + Send;
 
     /// Waits until there may be a job, or `patience` is over. May be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
 
-    /// Extends the lease, and says how far the grading is, if anybody knows.
+    /// Extends the lease, and reports the progress of the grading, if it is known.
     fn renew(
         &self,
         lease: &Lease,
         progress: Option<Progress>,
     ) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Brings the result. Saying it twice is no harm.
+    /// Reports the result. A repeated report does no harm.
     fn finish(&self, lease: &Lease, outcome: &Outcome)
     -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Gives the job back at no cost.
+    /// Returns the job at no cost.
     fn release(&self, lease: &Lease) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Says that the try came to nothing through no fault of the submission.
+    /// Reports that the try failed through no fault of the submission.
     fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
     /// Copies an artifact of the job into a new file.
@@ -59,10 +59,9 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     /// Stores a file for the result of the job.
     fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artifact, SourceError>> + Send;
 
-    /// Says that this worker is alive, with this many slots, and why it can't grade where it can't; called every now
-    /// and then.
+    /// Reports that this worker is alive, its slots, and why it can't grade if it can't; called from time to time.
     fn tick(&self, slots: usize, fault: Option<&str>) -> impl Future<Output = Result<(), SourceError>> + Send;
 
-    /// Returns how often [`tick`](Self::tick) is to be called.
+    /// Returns the time between two calls of [`tick`](Self::tick).
     fn tick_every(&self) -> Duration;
 }

@@ -1,4 +1,4 @@
-//! Asks the grader whether a suite can be graded by, before anybody's submission is.
+//! Checks by the grader whether a suite can be used, before a submission is graded by it.
 use super::{
     child::{Child, End, limit},
     program::isolate,
@@ -6,16 +6,16 @@ use super::{
 use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
-/// The longest time that the grader may look, in seconds on the clock and of the processor.
+/// The longest time that the grader may take, in seconds on the clock and of the processor.
 const SECONDS: u64 = 60;
 
 /// The memory that it may take for that.
 const MEMORY: u64 = 2 << 30;
 
-/// How much of what it says is told.
+/// The length of its output that is shown.
 const MESSAGE: usize = 2000;
 
-/// Has the grader look at the suite in a folder. A grader that knows no `suite check` has no objections.
+/// Checks the suite in a folder by the grader. A grader that knows no `suite check` has no objections.
 ///
 /// # Errors
 /// The grader's objections, without the folders of this machine.

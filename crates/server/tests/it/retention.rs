@@ -129,7 +129,7 @@ mod bucket {
         }
     }
 
-    /// A server that answers like S3, with a bucket; nothing where there is none.
+    /// A server that answers like S3, with a bucket; nothing if there is none.
     fn start() -> Option<(Moto, String)> {
         let port =
             std::net::TcpListener::bind("127.0.0.1:0").and_then(|socket| socket.local_addr()).expect("a port").port();

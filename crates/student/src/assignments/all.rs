@@ -5,7 +5,7 @@ use super::{
 };
 use std::sync::LazyLock;
 
-/// The rows of what the milestones before collisions have in common with those behind them.
+/// The rows that the milestones before collisions share with later ones.
 static STATES: LazyLock<Vec<Row>> =
     LazyLock::new(|| EDITS.iter().chain(STEPS).map(|row| row.with_mistake(Mistake::Step(row.mistake))).collect());
 

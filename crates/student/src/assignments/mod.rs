@@ -14,7 +14,7 @@ use fosssim_model::{
 /// program's work visible, together with the scenes of its suite.
 ///
 /// # Panics
-/// When one is not sound; a test reads them all.
+/// When a scene is not sound; a test reads them all.
 #[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     let read = |&(name, text): &(&str, &str)| {

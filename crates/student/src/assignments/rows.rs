@@ -1,10 +1,9 @@
 //! Everything that a student's program can do differently: one row each.
 //!
-//! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct but for
-//! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where
-//! a mistake is made asks [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones
-//! and traces are in [`t2m2`](super::t2m2), those of forces, integrators and what follows from them in
-//! [`states`](super::states).
+//! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct except for
+//! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where a
+//! mistake is made calls [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces
+//! are in [`t2m2`](super::t2m2), those of forces, integrators and what follows from them in [`states`](super::states).
 pub use fosssim_findings::explanation::Area;
 use fosssim_model::sim::PairKind;
 
@@ -35,7 +34,7 @@ pub struct RowOf<M> {
     /// The mistake in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives
     /// nothing away.
     pub what: &'static str,
-    /// The exact form: what stands there and what belongs there, in the assignment's notation.
+    /// The exact form: what is used and what must be used instead, in the assignment's notation.
     pub term: &'static str,
 }
 
@@ -87,7 +86,7 @@ macro_rules! rows {
         }
 
         impl $type {
-            /// Returns the part of the assignment that it belongs to.
+            /// Returns the part of the assignment to which it belongs.
             #[must_use]
             pub const fn area(self) -> $crate::assignments::rows::Area {
                 match self {

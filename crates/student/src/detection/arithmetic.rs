@@ -1,5 +1,5 @@
-//! The formulas of detection over a kind of number of choice: with fused multiply-adds, as a compiler makes them that
-//! may contract and reorder, or in twice the usual precision and rounded once at the end.
+//! The formulas of detection over a chosen kind of number: with fused multiply-adds, as a compiler makes them that may
+//! contract and reorder, or in twice the usual precision and rounded once at the end.
 //!
 //! The mathematics is that of collisions.md 2, the course's cubic coefficient of the particle-edge approach included.
 use std::ops::{Add, Div, Mul, Sub};

@@ -6,7 +6,7 @@ use crate::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Handover];
 
-/// The place where the coordinates of a program are those of the scene after moving the origin here.
+/// The origin of a program whose coordinates are those of the scene with another origin.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
 /// Cosine and sine of the angle by which a program turns its coordinates: 3-4-5 would be too good, its products are
@@ -16,7 +16,7 @@ const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 /// A program's coordinates.
 #[derive(Clone, Copy)]
 pub enum Axes {
-    /// Those of the scene.
+    /// The coordinates of the scene.
     Scene,
     /// Another origin.
     Shifted,

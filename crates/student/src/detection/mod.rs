@@ -118,8 +118,8 @@ impl Encounter {
         }
     }
 
-    /// Returns how fast the objects approach each other at time `t`: their relative displacement along the contact
-    /// vector.
+    /// Returns the speed at which the objects approach each other at time `t`: their relative displacement along the
+    /// contact vector.
     fn closing(&self, t: f64) -> f64 {
         let relative = match self {
             Self::Particles(one, two) => one.displacement - two.displacement,
@@ -132,7 +132,7 @@ impl Encounter {
         relative.dot(&self.contact_vector(Student::default(), t))
     }
 
-    /// Returns how close the centers may come.
+    /// Returns the least distance of the centers.
     fn reach(&self) -> f64 {
         match self {
             Self::Particles(one, two) => one.radius + two.radius,
@@ -176,14 +176,14 @@ impl IndexSlip {
     }
 }
 
-/// Returns whether pairs of this kind are looked at on the integrator's prediction.
+/// Returns whether pairs of this kind are checked on the integrator's prediction.
 fn is_on_prediction(student: Student, kind: usize) -> bool {
     let all = [Mistake::ParticleParticlePrediction, Mistake::ParticleEdgePrediction, Mistake::HalfPlanePrediction];
     student.makes(all[kind])
 }
 
-/// Returns the coordinates for this pair. A half-plane that moves has no formulas, so nobody moves along with its
-/// particle.
+/// Returns the coordinates for this pair. A half-plane that moves has no formulas, so the coordinates do not move along
+/// with its particle.
 fn axes_of(student: Student, pair: Pair) -> Axes {
     match (Axes::for_student(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
@@ -212,7 +212,7 @@ pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     lists.iter().map(|list| list.coefficients().to_vec()).collect()
 }
 
-/// Looks whether a pair collides while everything moves evenly from `q_start` to `q_end`, and logs its polynomials.
+/// Checks whether a pair collides while everything moves evenly from `q_start` to `q_end`, and logs its polynomials.
 pub fn detect(
     world: &World,
     pair: Pair,
@@ -284,7 +284,7 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
     Ok(contacts)
 }
 
-/// Returns whether a time of impact lies within the step.
+/// Returns whether a time of impact is within the step.
 fn within_step(student: Student, time: f64, time_step: f64) -> bool {
     let is_of_time =
         |mistake: &Mistake| [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTIONS.contains(mistake);
@@ -302,7 +302,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
     }
 }
 
-/// Returns whether one of the further tests rejects the impact that some programs make, and should not.
+/// Returns whether a further test rejects the impact; some programs make such tests, and should not.
 fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
     match (student.mistake_among(REJECTIONS), encounter) {
         (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
@@ -329,7 +329,8 @@ fn is_held(world: &World, pair: Pair) -> bool {
     world.fixed(edge.first) && world.fixed(edge.second)
 }
 
-/// Returns whether the particles' paths stay far apart, judged by bounding circles. Nobody asked for this.
+/// Returns whether the particles' paths stay far apart, judged by bounding circles. The assignment does not require
+/// this.
 fn out_of_reach(encounter: &Encounter) -> bool {
     let Encounter::Particles(one, two) = encounter else { return false };
     length(two.start - one.start) > one.radius + two.radius + length(one.displacement) + length(two.displacement)

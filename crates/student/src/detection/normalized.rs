@@ -1,6 +1,6 @@
-//! Correct programs that divide polynomials by something positive, in order to have handy numbers.
+//! Correct programs that divide polynomials by something positive, to get handy numbers.
 //!
-//! Where a polynomial is zero but for round-off, that makes numbers of ordinary size of it.
+//! If a polynomial is zero except for round-off, the division makes it numbers of ordinary size.
 use fosssim_num::vector::Vec2;
 
 use crate::encounter::Encounter;
@@ -26,7 +26,7 @@ pub fn normalize(student: Student, encounter: &Encounter, lists: &mut [Vec<f64>]
 }
 
 /// Returns a number that makes quotients of one pair's formulas handy: the square of the relative motion, along the
-/// normal where there is one; for edges that of the length.
+/// normal if there is one; for edges the square of the length.
 fn length_for_pair(encounter: &Encounter) -> f64 {
     let square = |v: Vec2| v.dot(&v);
     match encounter {

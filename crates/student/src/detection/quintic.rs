@@ -5,7 +5,7 @@ use crate::{Area, Mistake, author::Student};
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::ParticleEdge];
 
-/// Returns the quintic, or what this student puts in its place.
+/// Returns the quintic, or this student's replacement.
 pub fn approach(student: Student, bodies: &[MovingBody; 3]) -> Vec<f64> {
     let supplied = || supplied(student, bodies);
     match student.mistake_in(HERE) {

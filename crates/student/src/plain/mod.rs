@@ -1,14 +1,13 @@
-//! Whether a sentence is plain words, or gives a formula away.
+//! Checks whether a sentence is plain words, or gives a formula away.
 //!
-//! The hint level `what` tells students what is wrong and leaves the formula to them. Its sentences are written by hand
-//! in many places; this is what holds them to it.
+//! The hint level `what` shows students what is wrong and leaves the formula to them. Its sentences are written by hand
+//! in many places; this check enforces the rule.
 
 /// Names of polynomials, which the assignment gives them: they are no formulas.
 const NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 
 /// Returns the first piece of a formula in a sentence: a number, an operator, a product with a dot, a function's
-/// argument, or a letter that stands for a quantity. `None` where all is words; `alpha > 0` and `alpha < 1` count as
-/// names.
+/// argument, or a letter of a quantity. `None` if there are only words; `alpha > 0` and `alpha < 1` count as names.
 #[must_use]
 pub fn formula_in(sentence: &str) -> Option<String> {
     let text = NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
@@ -34,12 +33,12 @@ pub fn formula_in(sentence: &str) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// Returns whether a letter means nothing by itself; digits are looked at before.
+/// Returns whether a letter means nothing by itself; digits are checked before.
 const fn is_plain_alone(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }
 
-/// Returns whether a digit behind this is one of a step's number, which is a place.
+/// Returns whether a digit after this belongs to a step's number, which is a place.
 fn is_of_step(before: &[char]) -> bool {
     let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
     before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])

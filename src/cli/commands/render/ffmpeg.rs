@@ -31,7 +31,7 @@ const ENCODERS: [(&str, &[&str]); 4] = [
     ("mpeg4", &["-q:v", "3"]),
 ];
 
-/// A program that takes nothing for so long is ended.
+/// The time after which a program that reads nothing is ended.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The number of bytes kept of its messages.
@@ -74,7 +74,7 @@ impl Ffmpeg {
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
-        // A line is ` V....D libx264   what it is`.
+        // A line is ` V....D libx264   description`.
         let has = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
         let found = ENCODERS.into_iter().find(|(name, _)| has(name));
         found.context(
@@ -123,7 +123,7 @@ impl Ffmpeg {
         Ok(Self { child, pipe, words, watch, output: Some(output) })
     }
 
-    /// Hands a picture over.
+    /// Writes a picture to the program.
     ///
     /// # Errors
     /// When the program has ended.
@@ -134,10 +134,10 @@ impl Ffmpeg {
         Ok(())
     }
 
-    /// Waits for the film, which then appears under its name. `drawn` is how drawing went.
+    /// Waits for the film, which then appears under its name. `drawn` is the result of drawing.
     ///
     /// # Errors
-    /// When drawing or the program failed, with what it said; nothing appears then.
+    /// When drawing or the program failed, with the program's output; then nothing appears.
     pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
         drop(self.pipe.take());
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);

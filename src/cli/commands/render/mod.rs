@@ -27,7 +27,7 @@ use std::{
     path::Path,
 };
 
-/// Films of more pictures than this are thinned out, unless `--every` says how: a minute at 25 per second.
+/// Films of more pictures than this are thinned out, unless `--every` is given: a minute at 25 per second.
 const LONG_FILM: u32 = 1500;
 
 /// No more pictures than this are drawn at a time.
@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let picks = picks(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::FASTEST) };
-    // An output that can't work is said before the work is done.
+    // An output that can't work is reported before the work is done.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {
         Some(trace) => motion::traced(&scene.scene, trace, picks)?,
@@ -117,7 +117,7 @@ fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Resu
         if step > last {
             bail!("the scene has {}; there is no step {step}", counted(last.into(), "step"));
         }
-        // Paths are the traces of what came before.
+        // A particle's path consists of its earlier positions.
         let first = if scene.display.paths.is_empty() { step } else { 0 };
         return Ok(Picks { first, every: 1, last: step });
     }
@@ -167,7 +167,7 @@ impl Reel {
         self.painter.size()
     }
 
-    /// Draws every picture; tells its number (from 1), its step and its shapes.
+    /// Draws every picture; passes on its number (from 1), its step and its shapes.
     fn for_each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
         let (mut place, mut other) = (Vec::new(), Vec::new());
         let mut bar = console::Bar::new(self.main.pictures);
@@ -200,7 +200,7 @@ impl Reel {
     }
 }
 
-/// Where pictures go.
+/// The form and place of pictures.
 enum RenderTarget {
     Folder(Folder),
     Stream(Output),
@@ -222,7 +222,7 @@ impl RenderTarget {
         })
     }
 
-    /// Draws everything, and says in words what it was.
+    /// Draws everything, and describes the result in words.
     fn draw(self, form: RenderFormat, reel: &mut Reel, rate: Rate) -> Result<String> {
         let (pictures, size) = (reel.main.pictures, reel.size());
         let steps = match (reel.picks.step(1), reel.picks.step(pictures)) {

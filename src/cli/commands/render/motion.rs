@@ -30,7 +30,7 @@ pub(super) struct Picks {
 }
 
 impl Picks {
-    /// Returns how many steps these are.
+    /// Returns the number of these steps.
     pub(super) fn count(self) -> u32 {
         if self.first > self.last { 0 } else { (self.last - self.first) / self.every + 1 }
     }

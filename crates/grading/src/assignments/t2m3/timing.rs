@@ -1,16 +1,15 @@
-//! The contest's timing scenes, of the size of the course's. They are made when they are asked for: as files they would
-//! be megabytes.
+//! The contest's timing scenes, of the size of the course's. They are made on demand: as files they would be megabytes.
 use std::{fmt::Write, sync::OnceLock};
 
 /// A scene that is made.
 pub struct MadeScene {
-    /// The scene's name, as that of an embedded scene.
+    /// The scene's name, in the form of an embedded scene's.
     pub name: &'static str,
     make: fn() -> String,
     text: OnceLock<String>,
 }
 
-/// All of them, in alphabetical order.
+/// All timing scenes, in alphabetical order.
 pub static TIMING: [MadeScene; 2] = [
     MadeScene { name: "TimingTests/box-of-balls", make: box_of_balls, text: OnceLock::new() },
     MadeScene { name: "TimingTests/pile-of-ribbons", make: pile_of_ribbons, text: OnceLock::new() },
@@ -23,7 +22,7 @@ impl MadeScene {
     }
 }
 
-/// Whole numbers below 1000 that look drawn (a linear congruential generator).
+/// Whole numbers below 1000 that look random (a linear congruential generator).
 struct DrawnNumbers(u32);
 
 impl DrawnNumbers {

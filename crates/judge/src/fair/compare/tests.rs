@@ -34,7 +34,7 @@ fn what_fits_at_once_is_what_a_close_look_says() {
     assert!(answered > 5000, "{answered}");
 }
 
-/// Polynomials that are right at once are right in a close look, too, and by the same factor but for round-off.
+/// Polynomials that are right at once are right in a close look, too, and by the same factor except for round-off.
 #[test]
 fn what_is_right_at_once_is_right() {
     let mut next = numbers();

@@ -1,4 +1,4 @@
-//! Calls whose polynomials are right at once: by the reference's own coefficients, without a look at their bounds.
+//! Calls whose polynomials are clearly right: by the reference's own coefficients, without their bounds.
 use super::Follower;
 use crate::fair::{
     compare::{MOST, Match, Similarity},
@@ -19,15 +19,15 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// How the polynomials of a call compare that are right at once.
+/// The comparison of the polynomials of a call that are clearly right.
 pub(super) type AtOnce = [Option<Match>; PairKind::MOST_POLYNOMIALS];
 
 /// For each polynomial of a kind of pair, a sum of moduli above which it is more than round-off.
 pub(super) type Floors = ByKind<[f64; PairKind::MOST_POLYNOMIALS]>;
 
 impl Follower<'_> {
-    /// Returns the logged polynomials of a call that are right at once: [`compare`](crate::fair::compare::compare) says
-    /// the same of them.
+    /// Returns the logged polynomials of a call that are clearly right: [`compare`](crate::fair::compare::compare)
+    /// accepts them, too.
     #[inline]
     pub(super) fn right_at_once(
         &mut self,
@@ -87,8 +87,8 @@ fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
         let number = BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
         Plane { x: number, y: number }
     };
-    // Only differences of positions matter, which are not larger than the spread; what is too small of their moduli in
-    // the bounds is added.
+    // Only differences of positions matter, which are not larger than the spread; the bounds add what their moduli
+    // lack.
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
     let radii = BoundedValue { value: Magnitude(radius), bound: Magnitude(radius) };

@@ -11,17 +11,17 @@ use fosssim_model::{
 };
 use fosssim_num::vector::Vec2;
 
-/// The result of the reference's own polynomials for a pair whose logged ones are right, but differ from them.
+/// The result of the reference's own polynomials for a pair whose logged polynomials are right, but differ.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OwnImpact {
     /// The objects' time of impact.
     pub time: f64,
-    /// Whether the logged ones have lost leading coefficients that these have.
+    /// Whether the logged polynomials have lost leading coefficients that these have.
     pub lost: bool,
 }
 
 impl Follower<'_> {
-    /// Returns the decision that the step goes on with: the submission's, as far as the trace tells.
+    /// Returns the decision with which the step continues: the submission's, if the trace shows it.
     pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judged.total();
@@ -40,7 +40,7 @@ impl Follower<'_> {
             Some(own) if (own.time <= 1.0) != (by_polynomials.time() <= 1.0) => own.time <= 1.0,
             _ => by_polynomials.collides(),
         };
-        // A decision that is charged is not excused as well.
+        // A decision that is counted as wrong is not excused as well.
         if decision.collides() != is_expected && self.judged.total() == findings {
             self.judged.note_borderline(self.pass, pair, decision.collides());
         }
@@ -50,8 +50,8 @@ impl Follower<'_> {
         decision
     }
 
-    /// Returns the decision about a call whose logged polynomials exclude an impact, where the reference's own, of
-    /// which nothing was lost, say this.
+    /// Returns the decision about a call whose logged polynomials exclude an impact, if the reference's own, which have
+    /// lost nothing, give this result.
     pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(OwnImpact { time, lost: false });
@@ -62,9 +62,9 @@ impl Follower<'_> {
         if self.prefers_own { by_own } else { Decision::Miss { time: Time::Excluded } }
     }
 
-    /// Charges what lost coefficients change: they are no round-off, their loss is the factor's fault. Where a factor
-    /// keeps some that the course's library drops of the reference's, nothing is lost: what its root finder makes of
-    /// them is not charged.
+    /// Counts decisions that lost coefficients change: their loss is no round-off, but the factor's fault. If a factor
+    /// keeps some that the course's library drops from the reference's, nothing is lost: what its root finder makes of
+    /// them is not counted.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
         if !own.lost {
             return;
@@ -147,7 +147,7 @@ impl Follower<'_> {
         }
     }
 
-    /// Charges impulses that belong to no decision.
+    /// Counts impulses that belong to no decision.
     pub(super) fn settle_impulses(&mut self) {
         for index in 0..self.used.len() {
             if self.used[index] {

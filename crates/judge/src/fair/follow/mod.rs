@@ -1,7 +1,7 @@
-//! The observer that follows a submission through one step, and charges what can't be followed.
+//! The observer that follows a submission through one step, and counts what can't be followed.
 //!
-//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows what was decided,
-//! `at_once` spares polynomials that are clearly right the close look.
+//! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows the decisions, and
+//! `at_once` skips the bounds of polynomials that are clearly right.
 mod at_once;
 mod decisions;
 mod passes;
@@ -34,20 +34,20 @@ const DECISIONS: usize = 1 << 14;
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
-    /// The step's sensitivity to round-off, on a second look.
+    /// The step's sensitivity to round-off, in the second comparison.
     sensitivity: Option<&'a Sensitivity>,
-    /// Decisions (by number of the call) that are turned round: borderline ones, in hybrid scenes.
+    /// Decisions (by number of the call) that are reversed: borderline ones, in hybrid scenes.
     flips: &'a [usize],
     /// The judgement of the step so far.
     pub judged: StepJudgement,
     /// All decisions of the step.
     pub decisions: Vec<FollowedDecision>,
-    /// Calls of hybrid scenes whose decisions round-off may flip, in order (on a second look).
+    /// Calls of hybrid scenes whose decisions round-off may flip, in order (in the second comparison).
     pub borderline: Vec<usize>,
     pass: Pass,
     /// Passes so far: before the mid record, and after it.
     passes: [usize; 2],
-    /// Passes in the trace; `None` where its polynomials don't come in whole passes.
+    /// Passes in the trace; `None` if its polynomials don't fill whole passes.
     logged_passes: Option<[usize; 2]>,
     /// The number in the end record's list of the pass's next polynomial; `None` when it is not logged.
     next: Option<usize>,
@@ -69,24 +69,25 @@ pub(super) struct Follower<'a> {
     pub has_disputes: bool,
     /// Whether such calls are decided as the reference decides them.
     prefers_own: bool,
-    /// The floors of round-off for polynomials of the positions that the pass sees, once they were asked for.
+    /// The floors of round-off for polynomials of the positions that the pass sees, once they are needed.
     floors: Option<Floors>,
 }
 
 /// The facts about a call between its polynomials and its decision.
 #[derive(Debug, Default)]
 struct CurrentCall {
-    /// The result of the reference's own polynomials, where the logged ones are right, but differ from them.
+    /// The result of the reference's own polynomials, if the logged polynomials are right, but differ.
     own: Option<OwnImpact>,
     /// Whether the polynomials are right, and lead the root finder to another decision than the reference's.
     is_disputed: bool,
     /// Whether the polynomials are right, nothing was lost, and those that were logged exclude an impact.
     misses_logged: bool,
-    /// How the objects move.
+    /// The motion of the objects.
     seen: Option<SeenCall>,
 }
 
-/// How the objects of a call move. Its expected polynomials follow, and are seldom asked for once they are compared.
+/// The motion of the objects of a call. Their expected polynomials follow from it, and are seldom needed after the
+/// comparison.
 #[derive(Debug, Clone, Copy)]
 struct SeenCall {
     motion: BoundedPairMotion,
@@ -148,7 +149,7 @@ impl<'a> Follower<'a> {
         Some(found)
     }
 
-    /// Returns how the call's objects move, and what its polynomials should be.
+    /// Returns the motion of the call's objects, and the expected polynomials.
     fn expected(&self) -> Option<(BoundedPairMotion, ExpectedPolynomials)> {
         let SeenCall { motion, has_right_approach } = self.call.seen?;
         let polynomials = motion.polynomials();
@@ -285,7 +286,7 @@ impl Steer for Follower<'_> {
                 return;
             }
         }
-        // The submission's polynomials decide, even if they are wrong: a wrong polynomial is charged once.
+        // The submission's polynomials decide, even if they are wrong: a wrong polynomial is counted once.
         polynomials.copy_from_slice(&searched[..count]);
     }
 

@@ -11,12 +11,12 @@ use crate::{
 use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::bounded::BoundedValue;
 
-/// How each polynomial of a call compares; of those beyond its number nothing is said.
+/// The comparison of each polynomial of a call; places beyond its number are unused.
 type Results = [Result<Match, Mismatch>; PairKind::MOST_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
-    /// Compares a pair's logged polynomials, which begin at `index`, with what they should be. Whether they are right
-    /// as far as the place of the particles is known.
+    /// Compares a pair's logged polynomials, which begin at `index`, with the expected ones. Returns whether they are
+    /// right, if the place of the particles is known.
     pub(super) fn review(
         &mut self,
         pair: Pair,
@@ -25,7 +25,7 @@ impl<'a> Follower<'a> {
         at_once: &[Option<Match>],
     ) -> bool {
         let count = at_once.len();
-        // The first approach polynomial that tells its form is looked at closely.
+        // The first approach polynomial that shows its form is compared with bounds.
         let is_form_known = pair.kind != PairKind::ParticleEdge || self.judged.course_form.is_some();
         if is_form_known && at_once.iter().all(Option::is_some) {
             for (number, found) in at_once.iter().flatten().enumerate() {
@@ -65,7 +65,7 @@ impl<'a> Follower<'a> {
             let logged = self.logged_polynomial(pair, index, number);
             let is_known = self.known_positions().is_some()
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
-            // Where the particles are behind an error that moves them, nobody knows.
+            // Behind an error that moves them, the place of the particles is unknown.
             let is_reached = is_known || !self.tainted[self.part()];
             let pended = self.judged.pended();
             let said = self.judged.note(&expected, &logged, result, is_reached);
@@ -89,7 +89,7 @@ impl<'a> Follower<'a> {
         is_right
     }
 
-    /// Returns polynomial `number` of a call whose first one is at `index`.
+    /// Returns polynomial `number` of a call whose first polynomial is at `index`.
     fn logged_polynomial(&self, pair: Pair, index: usize, number: usize) -> LoggedPolynomial<'a> {
         let (role, index) = (Role::from_number(pair.kind, number), index + number);
         let place = PolynomialPlace { pass: self.pass, pair, role, index };
@@ -97,8 +97,8 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
-    /// is where it should be: overlap and approach tell how far the objects are apart, the other two of a particle and
-    /// an edge where along the edge.
+    /// is where it should be: overlap and approach depend on the distance of the objects, the other two of a particle
+    /// and an edge on the place along the edge.
     fn is_proven(
         &self,
         expected: &ExpectedPolynomials,

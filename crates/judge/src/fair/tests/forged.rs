@@ -99,7 +99,7 @@ fn ordinary_factors_are_accepted() {
     }
 }
 
-/// A ball that moves in the first step, and ends it in touch with a slope but for a rounding.
+/// A ball that moves in the first step, and ends it in touch with a slope except for a rounding.
 const TOUCH: &str = r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
     <collision type="continuous-time" COR="1"/>
     <particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>
@@ -141,7 +141,7 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     }
 }
 
-/// All polynomials of all steps are empty, but for one that has a factor: it says nothing of the others' factors.
+/// All polynomials of all steps are empty, except for one that has a factor: it says nothing of the others' factors.
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {
@@ -316,8 +316,8 @@ fn the_references_own_way_is_right_wherever_it_leads() {
     assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
 
-/// Balls that rest on each other: every approach is zero but for round-off. A trace in which all of them go the other
-/// way shows nothing.
+/// Balls that rest on each other: every approach is zero except for round-off. A trace in which all of them go the
+/// other way shows nothing.
 #[test]
 fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     let ball = |x: f64| format!(r#"<particle m="1" px="{x}" py="0.3" vx="0.1" vy="0.3" fixed="0" radius="0.6"/>"#);

@@ -1,5 +1,5 @@
-//! Certified decisions beside those of the root finder: how often each level decides, and how often and why they
-//! differ.
+//! Certified decisions compared with those of the root finder: the number of decisions of each level, and the number
+//! and reasons of differences.
 use std::fmt::Write as _;
 
 use fosssim_oracle::num::{
@@ -11,10 +11,10 @@ use fosssim_oracle::num::{
 /// Units of rounding that the fair rules allow for.
 const UNITS: f64 = 64.0;
 
-/// The reason why root finder and certified decision differ: what the original does on purpose, or its rounding.
+/// The reasons why root finder and certified decision differ: intentions of the original, or its rounding.
 const REASONS: [&str; 3] = ["c t^m", "dropped terms", "rounding"];
 
-/// Certified decisions of one pair type beside those of the root finder.
+/// Certified decisions of one pair type, compared with those of the root finder.
 #[derive(Default)]
 pub(super) struct Decisions {
     levels: [u64; Level::ALL.len()],

@@ -1,18 +1,18 @@
 //! Compares the certificate with the root finder on random detections, on all processors.
 //!
 //! `audit [detections] [seed]` draws that many detections (default: a million) of the three pair types from wide and
-//! nasty distributions. Wherever the certificate says that nothing happens within the step, the search has to say so,
-//! too: for the list, and for each polynomial by itself, where no other one hides a mistake. A fourth kind are products
-//! of linear factors whose zeros are as awkward as can be. It prints how many detections each level decided, how many
-//! the search alone could decide, and the first disagreement; there must be none. The draws depend on the seed only,
-//! not on the number of processors.
+//! nasty distributions. Wherever the certificate excludes an impact within the step, the search must exclude it, too:
+//! for the list, and for each polynomial by itself, where no other one hides a mistake. A fourth kind are products of
+//! linear factors whose zeros are as awkward as can be. It prints how many detections each level decided, how many the
+//! search alone could decide, and the first disagreement; there must be none. The draws depend on the seed only, not on
+//! the number of processors.
 //!
 //! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it)
-//! with the root finder. Here disagreements are facts about the root finder, not mistakes: a decision says what is
-//! true. They are sorted by what the original does on purpose: `c t^m` counts as nowhere positive, small leading
-//! coefficients are dropped; whatever is left is its rounding. These do not change the exit code.
+//! with the root finder. Here disagreements are facts about the root finder, not mistakes: a decision is true. They are
+//! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, and small leading coefficients are
+//! dropped. All others come from its rounding. They do not change the exit code.
 //!
-//! `audit states [CORPUS]` runs right programs in other arithmetic where traces hold states.
+//! `audit states [CORPUS]` runs right programs in other arithmetic on scenes whose traces hold states.
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
     num::{
@@ -364,8 +364,7 @@ fn turning(random: &mut Random) -> RandomMotion {
     }
 }
 
-/// Makes a motion in which everything moves together, with small differences; this is what most pairs of a scene look
-/// like.
+/// Makes a motion in which everything moves together, with small differences, as most pairs of a scene do.
 fn bulk(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let together = random.direction() * (scale * random.log(-8.0, 0.5));

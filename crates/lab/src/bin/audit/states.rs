@@ -1,5 +1,5 @@
 //! Right programs in other arithmetic on scenes whose traces hold states: the share of the fair rules' tolerances that
-//! they use, and the noise that the rules refuse.
+//! they use, and the noise that the rules reject.
 use fosssim_lab::{
     right,
     runs::{is_accepted, judged},
@@ -35,14 +35,14 @@ struct MilestoneTally {
     /// The largest share of a tolerance.
     position: f64,
     velocity: f64,
-    /// The least factor by which the differences of single steps from the reference have to grow to be refused.
+    /// The least factor by which the differences of single steps from the reference have to grow to be rejected.
     room: Option<u32>,
-    /// How many traces get each noise, and how many of these are refused.
+    /// The number of traces that get each noise, and the number of these that are rejected.
     noisy: u64,
     refused: [u64; NOISES.len()],
 }
 
-/// Tries all programs on the scenes that come with the program, and on those of a corpus.
+/// Tries all programs on the embedded scenes, and on those of a corpus.
 pub fn run(corpus: Option<&Path>) -> ExitCode {
     let results: Vec<(String, MilestoneTally, Vec<String>)> =
         scenes(corpus).par_iter().map(|(name, scene)| try_scene(name, scene)).collect();
@@ -89,7 +89,7 @@ impl MilestoneTally {
     }
 }
 
-/// Returns the milestone, its results on this scene, and the right programs that are refused.
+/// Returns the milestone, its results on this scene, and the right programs that are rejected.
 fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>) {
     let mut tally = MilestoneTally { scenes: 1, ..MilestoneTally::default() };
     let mut faults = Vec::new();
@@ -171,7 +171,7 @@ impl<'a> SingleSteps<'a> {
 }
 
 fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally) {
-    // Integers stand between the numbers of other records.
+    // Integers are between the numbers of other records.
     if !matches!(scene.collision.handling().records.impulses, ImpulseList::Absent) {
         return;
     }

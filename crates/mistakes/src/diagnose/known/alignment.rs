@@ -1,4 +1,4 @@
-//! Records that are missing throughout: then every later record stands for another one, and no step looks right.
+//! Records that are missing throughout: then every later record is in another one's place, and no step looks right.
 use super::{explain, resimulate::resimulate};
 use crate::diagnose::{
     Explanation,
@@ -16,13 +16,13 @@ pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> 
             return None;
         }
         let steps = aligned_steps(scene, layout, &scan.outline.opening, row)?;
-        // A scene in which nothing moves is right however it is read; then only the number of records tells.
+        // A scene in which nothing moves is right however it is read; then only the number of records decides.
         let tells = !scan.wrong.is_empty() || scan.outline.records == Some(expected);
         tells.then(|| explain(row, (steps, steps)))
     })
 }
 
-/// Returns how many records such a trace has.
+/// Returns the number of records of such a trace.
 fn records_without(layout: Layout, row: &Row) -> u64 {
     match row.mistake {
         Mistake::LogNoInitial => layout.records() - 1,
@@ -30,8 +30,8 @@ fn records_without(layout: Layout, row: &Row) -> u64 {
     }
 }
 
-/// Returns how many steps the opening holds when the records are read without the missing one; `None` when one of them
-/// is wrong.
+/// Returns the number of steps in the opening if the records are read without the missing one; `None` if one of them is
+/// wrong.
 fn aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

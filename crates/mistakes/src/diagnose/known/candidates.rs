@@ -92,7 +92,7 @@ impl<'a> Candidates<'a> {
                 tried - *reproduced <= allowed
             });
         }
-        // A mistake that does not make the first difference is not the one to look for.
+        // A mistake that does not make the first difference is not the right one.
         left.retain(|(candidate, reproduced)| {
             2 * reproduced >= tried
                 && self.scan.wrong.first().is_none_or(|first| self.reproduces(candidate, first))

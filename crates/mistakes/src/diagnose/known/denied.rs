@@ -7,8 +7,8 @@ use fosssim_model::{
 use fosssim_num::vector::{at, length};
 use fosssim_student::{CATALOGUE, Mistake, Row};
 
-/// Keys of mistakes that say that something is never done, where this trace does it: a zone is moved, a pass is made, a
-/// polynomial of the kind is right.
+/// Returns the keys of mistakes by which something is never done that this trace does: a zone is moved, a pass is made,
+/// a polynomial of the kind is right.
 pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong.iter().chain(&scan.right);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();

@@ -9,7 +9,7 @@ use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
 use fosssim_num::vector::at;
 use fosssim_student::{StepLog, World};
 
-/// Returns the example of a wrong step: where it differs first, what was expected there and what the submission logged.
+/// Returns the example of a wrong step: the first different place, the expected and the logged value.
 pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: ApproachForm, kept: &KeptStep) -> Example {
     let mut capture = Capture::new(&scene.collision);
     // The step was simulated before, so it does not fail; if it did, the lists below would be empty.

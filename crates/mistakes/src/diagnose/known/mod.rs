@@ -3,10 +3,9 @@
 //! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For some of
 //! them, chosen to be diverse, and for some right ones in which something happens, the second simulator
 //! ([`fosssim_student`]) starts from the submission's own state and makes one mistake. The mistake explains the
-//! submission when everything that the step logged comes out the same: polynomials up to a positive factor, contacts,
-//! the states in the middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the
-//! same. Correct variants of the catalogue are tried, too, and where one of them reproduces the steps no mistake is
-//! named.
+//! submission if everything that the step logged is reproduced: polynomials up to a positive factor, contacts, the
+//! states in the middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the same.
+//! Correct variants of the catalogue are tried, too, and if one of them reproduces the steps no mistake is named.
 //!
 //! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
 mod alignment;
@@ -39,14 +38,14 @@ use several::SeveralRows;
 ///
 /// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
 /// correct variant reproduces them as well. Else it holds one explanation, or those of up to three mistakes that
-/// reproduce the steps together, stages that are still empty besides; further mistakes that reproduce the same steps
-/// are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else the
-/// earliest of the assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe,
+/// reproduce the steps together, in addition to stages that are still empty; further mistakes that reproduce the same
+/// steps are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else
+/// the earliest of the assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe,
 /// trace.
 ///
 /// `samples` and `reproduced` count wrong steps; right ones that the mistake would make wrong exclude it. Traces of any
-/// content are accepted; what can't be read, what a damaged record holds, and what follows the first 64 MiB, is passed
-/// over. A trace whose first record is another scene's yields nothing but the question whether it is of this scene
+/// content are accepted; unreadable parts, damaged records, and bytes behind the first 64 MiB are ignored. A trace
+/// whose first record is another scene's yields only the question whether it is of this scene
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
@@ -59,13 +58,13 @@ pub fn known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
 pub(super) struct KnownMistakes {
     /// The mistakes, the likeliest first.
     pub(super) explanations: Vec<Explanation>,
-    /// The kept steps, where no mistake explains all of them.
+    /// The kept steps, if no mistake explains all of them.
     pub(super) open: Option<Scan>,
     /// Keys of empty stages of which the trace shows something.
     pub(super) denies: Vec<String>,
 }
 
-/// Returns the catalogue's explanations of kept steps, and the steps themselves where no mistake explains all of them.
+/// Returns the catalogue's explanations of kept steps, and the steps themselves if no mistake explains all of them.
 pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> KnownMistakes {
     let only = |one: Explanation| KnownMistakes { explanations: vec![one], ..KnownMistakes::default() };
     if let Some(missing) = alignment::missing_record(scene, &scan) {
@@ -82,13 +81,13 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
     if !explanations.is_empty() || scan.outline.padded == 0 {
         return KnownMistakes { explanations, open: (!is_settled).then_some(scan), denies };
     }
-    // Reading drops what the course's library would have dropped, so such steps look right.
+    // Reading drops coefficients that the course's library would have dropped, so such steps look right.
     let padded = find("log-padded").map(|row| explain(row, (scan.outline.padded, scan.outline.padded)));
     KnownMistakes { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
-/// Returns the catalogue's explanations, and whether there is nothing else to say. May leave the steps as a program
-/// with the right approach sees them.
+/// Returns the catalogue's explanations, and whether these are complete. It may leave the steps as a program with the
+/// right approach sees them.
 fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
@@ -121,7 +120,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     let samples = std::mem::take(&mut scan.wrong).into_iter().chain(std::mem::take(&mut scan.right));
     for mut sample in samples {
         let logged = sample.records.end.polynomials.len();
-        // A few more than were logged show that there are too few; no more are of interest.
+        // A few more than were logged show that there are too few; further ones do not matter.
         let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
         let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };
@@ -132,10 +131,10 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     !scan.wrong.is_empty()
 }
 
-/// How many polynomials more than were logged a step may have before it is left.
+/// The number of surplus polynomials, compared with the log, after which a step is left.
 const SPARE: usize = 10_000;
 
-/// Returns the explanations of several mistakes, which reproduce the same steps together. Empty stages are told first.
+/// Returns the explanations of several mistakes, which reproduce the same steps together. Empty stages come first.
 fn together(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -155,8 +154,8 @@ fn together(
     all
 }
 
-/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. None where no
-/// row reproduces enough, or where a correct variant does.
+/// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. `None` if no
+/// row reproduces enough, or if a correct variant does.
 fn best(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -178,8 +177,8 @@ fn best(
     (Some(explanation), complete)
 }
 
-/// Returns a rank of which smaller is likelier, among mistakes that a trace can't tell apart: work that was not done at
-/// all comes first, and mistakes that need a special scene to show come last. Rows of the same number keep the
+/// Returns a rank of which smaller is likelier, among mistakes that a trace can't distinguish: work that was not done
+/// at all comes first, and mistakes that need a special scene to show come last. Rows of the same number keep the
 /// catalogue's order.
 fn plausibility(row: &Row) -> u8 {
     match row.mistake {

@@ -15,9 +15,9 @@ use std::cell::Cell;
 const WORK: u64 = 200_000;
 
 /// Returns whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which
-/// no judge takes for round-off. False also where looking for it would take too long, and where the course's library
-/// does that part of the work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen
-/// in `hybrid` only.
+/// no judge takes for round-off. False also if the search would take too long, and if the course's library does that
+/// part of the work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen in
+/// `hybrid` only.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
     shows_within(scene, key, &Cell::new(0))

@@ -26,8 +26,8 @@ impl ApproachForm {
     }
 }
 
-/// Returns the cost of a step besides its polynomials, in polynomials: forces between all pairs are many times cheaper
-/// than these, and penalty forces look at near pairs only. Solves of implicit integrators are counted as they come.
+/// Returns the cost of a step without its polynomials, in polynomials: forces between all pairs are many times cheaper
+/// than these, and penalty forces check only near pairs. Solves of implicit integrators are counted when they happen.
 pub(super) fn step_work(scene: &Scene) -> u64 {
     let of_pairs = match scene.collision {
         Collision::None => 0,

@@ -1,8 +1,7 @@
-//! Several mistakes at once: stages that are still empty, and rows that are added one by one.
+//! Several mistakes together: stages that are still empty, and rows that are added one by one.
 //!
-//! A row is worth adding when it carries the simulation of the wrong steps further before it parts from what was
-//! logged. Only a set that reproduces everything, right steps included, and of which no row can be left out, explains
-//! anything.
+//! A row is worth adding if with it the simulation of the wrong steps follows the log further. Only a set that
+//! reproduces everything, right steps included, and of which no row can be left out, explains anything.
 use super::{plausibility, resimulate::ApproachForm, shown::applicable, trials::Trials};
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
@@ -19,7 +18,7 @@ const WORK: u64 = 700_000;
 pub(super) struct SeveralRows {
     /// The rows: empty stages first, then in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
-    /// Rows that are as good, for each of these.
+    /// Rows that are equally good, for each of these rows.
     pub(super) same_as: Vec<Vec<&'static Row>>,
     /// Rows that do without the empty stages.
     pub(super) rivals: Vec<&'static Row>,
@@ -27,7 +26,7 @@ pub(super) struct SeveralRows {
     pub(super) samples: u64,
 }
 
-/// Returns the set of rows that reproduces all kept steps; `None` where none is found with at least two rows.
+/// Returns the set of rows that reproduces all kept steps; `None` if none is found with at least two rows.
 pub(super) fn several(
     reference: &Reference<'_>,
     scene: &Scene,
@@ -110,9 +109,9 @@ impl<'a> Search<'a> {
         Some(SeveralRows { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
-    /// Mistakes of a program whose steps log states: none carries a step further, all together do. Functions that are
-    /// not written come first, then one mistake beside such functions, then two mistakes; none where two sets that have
-    /// nothing in common do.
+    /// Finds mistakes of a program whose steps log states: none carries a step further, all together do. Functions that
+    /// are not written come first, then one mistake next to such functions, then two mistakes; none if two disjoint
+    /// sets do.
     fn together(&self) -> Option<SeveralRows> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
@@ -140,8 +139,8 @@ impl<'a> Search<'a> {
         self.only(beside(1)).or_else(|| self.only(beside(2))).or_else(|| self.only(of_two))
     }
 
-    /// Returns the one of these sets that reproduces everything, with the rows that do as well in the place of one of
-    /// its own.
+    /// Returns the only one of these sets that reproduces everything, with rows that are equally good for one of its
+    /// own.
     fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
@@ -165,7 +164,7 @@ impl<'a> Search<'a> {
         is_told.then(|| SeveralRows { rows: first, same_as, rivals: Vec::new(), samples })
     }
 
-    /// Returns whether these reproduce everything, and none of them can be left out.
+    /// Returns whether these rows reproduce everything, and none can be left out.
     fn explains(&self, set: &[&'static Row]) -> bool {
         let Some(probe) = self.probes.first() else { return false };
         self.trials.reached(&self.trials.program(set), probe) >= 1.0
@@ -174,8 +173,8 @@ impl<'a> Search<'a> {
             && self.confirmed(set).is_some()
     }
 
-    /// Sets of empty stages to begin with: the one that carries furthest, and those detections without which the
-    /// numbers of polynomials are those of whole passes, should another mistake hide it.
+    /// Returns sets of empty stages to begin with: the one that carries furthest, and those detections without which
+    /// the numbers of polynomials are those of whole passes, in case another mistake hides it.
     fn starts(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.empty_stages()];
         let counts: Vec<usize> = self.scan.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
@@ -192,18 +191,18 @@ impl<'a> Search<'a> {
         starts
     }
 
-    /// Returns the detections that the scene asks for when they are left empty, and how many polynomials a pass of each
-    /// logs.
+    /// Returns the detections that the scene requires if they are left empty, and the number of polynomials that a pass
+    /// of each logs.
     fn sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
         let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomials());
         self.stages().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
-    /// Returns the smallest set of stages whose emptiness carries furthest; nothing where none does.
+    /// Returns the smallest set of stages whose emptiness carries furthest; `None` if none does.
     fn empty_stages(&self) -> Vec<&'static Row> {
         let mut sets = subsets(&self.stages());
-        // Of the loop one reading is enough, and nobody sees a failsafe that is never called.
+        // One reading of the loop is enough, and a failsafe that is never called shows nothing.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
             let loops = has(Mistake::ImpulsesEmpty) && has(Mistake::ImpulsesEmptySuccess);
@@ -257,7 +256,7 @@ impl<'a> Search<'a> {
             }
         }
         let (progress, mut rows) = best;
-        // Of those that carry as far, one that makes right steps wrong is none of the set.
+        // A stage that carries as far but makes right steps wrong is not in the set.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
             self.scan.right.iter().any(|kept| self.trials.reached(&program, kept) < 1.0)
@@ -275,8 +274,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Returns how many wrong steps the set reproduces, if that is all of them and all right ones, as far as there is
-    /// time.
+    /// Returns how many wrong steps the set reproduces, if that is all of them and all right ones, within the time.
     fn confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
@@ -293,7 +291,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Returns all sets of these, the smallest first.
+/// Returns all sets of these rows, the smallest first.
 fn subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
     let of_bits = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
     let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(of_bits).collect();

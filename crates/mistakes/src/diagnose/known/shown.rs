@@ -11,7 +11,7 @@ use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 const MOST_APART: usize = 5_000;
 
 /// Returns the rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student
-/// of the scene's assignment writes. Records that are missing are looked for elsewhere, and so are near pairs
+/// of the scene's assignment writes. Missing records are searched elsewhere, and so are near pairs
 /// ([`near`](super::super::near)).
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried = |row: &&Row| {
@@ -26,19 +26,19 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| shows(scene, &counts, row))
 }
 
-/// Returns whether a penalty force with this mistake looks at all pairs, near or not.
+/// Returns whether a penalty force with this mistake checks all pairs, near or not.
 fn reaches_apart(row: &Row) -> bool {
     let Mistake::Step(StepMistake::Edit(edit)) = row.mistake else { return false };
     !edit.slip.keeps_distance() && matches!(term(row).row().part, Part::Penalty(_))
 }
 
-/// Returns whether the mistake is one of forces, integrators, penalties or simple responses.
+/// Returns whether the mistake is in forces, integrators, penalties or simple responses.
 pub(super) const fn is_of_states(row: &Row) -> bool {
     matches!(row.mistake, Mistake::Step(_))
 }
 
-/// Returns whether a program with this row may leave another trace than one without. Only what the scene does not have
-/// speaks against it: stages of a step, and kinds of pairs.
+/// Returns whether a program with this row may leave another trace than one without. Only missing parts of the scene
+/// exclude it: stages of a step, and kinds of pairs.
 #[must_use]
 pub fn can_show(scene: &Scene, row: &Row) -> bool {
     shows(scene, &pairs(scene).counts(), row)

@@ -23,7 +23,7 @@ pub(super) struct Trials<'a> {
 /// A program.
 pub(super) struct Program {
     world: World,
-    /// A program that logs wrongly asks the root finder something else than it says.
+    /// A program that logs wrongly hands other polynomials to the root finder than it logs.
     logs_wrongly: bool,
 }
 
@@ -53,7 +53,7 @@ impl<'a> Trials<'a> {
         Program { world: self.world.for_student(student), logs_wrongly }
     }
 
-    /// Returns how far the program's step is what was logged: 1 is all the way, polynomials are the first half.
+    /// Returns the part of the logged step that the program reproduces: 1 is all of it, polynomials are the first half.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub(super) fn reached(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;

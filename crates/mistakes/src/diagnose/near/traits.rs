@@ -10,7 +10,7 @@ pub(super) struct TraitRow {
     /// The trait's exact form; `{axis}` is x or y, `{n}` a number.
     exact: &'static str,
     axes: &'static [TraitAxis],
-    /// The numbers with which it is asked, the strictest last.
+    /// The numbers with which it is tried, the strictest last.
     numbers: &'static [f64],
     holds: fn(&PlacedPair<'_>, usize, f64) -> bool,
 }
@@ -73,7 +73,7 @@ pub(super) fn variants() -> impl Iterator<Item = Variant> {
     })
 }
 
-/// Traits that are about no axis are asked of one.
+/// The axis of traits that are about no axis.
 const NO_AXIS: &[TraitAxis] = &[TraitAxis::X];
 const ONE_AXIS: &[TraitAxis] = &[TraitAxis::X, TraitAxis::Y];
 const ANY_AXIS: &[TraitAxis] = &[TraitAxis::Either, TraitAxis::X, TraitAxis::Y];
@@ -88,7 +88,7 @@ const LENGTHS: &[f64] = &[0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
 
 macro_rules! traits {
     ($($axes:ident $numbers:ident $what:literal $exact:literal $holds:expr;)*) => {
-        /// The table; of rows that tell pairs apart as well, the first ones are told.
+        /// The table; of rows that distinguish pairs equally well, the first ones are reported.
         const TRAITS: &[TraitRow] = &[$(TraitRow {
             what: $what, exact: $exact, axes: $axes, numbers: $numbers, holds: $holds,
         },)*];
@@ -246,14 +246,14 @@ fn common([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
     [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
 }
 
-/// Returns how much the boxes overlap on an axis, as a share of the smaller one.
+/// Returns how much the boxes overlap on an axis, as a share of the smaller box.
 fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
     let [from, to] = common(pair.boxes(), axis);
     let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);
     (to - from) / sides[0].min(sides[1])
 }
 
-/// Returns how far the particle is from the edge's ends, in sums of the radii.
+/// Returns the distance of the particle from the edge's ends, in sums of the radii.
 fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
     let edge = pair.edge()?;
     let reach = pair.radius() + pair.other_radius();

@@ -1,6 +1,6 @@
-//! Whether a logged polynomial is a given one, up to a positive scale and round-off.
+//! Compares a logged polynomial with a given one, up to a positive scale and round-off.
 //!
-//! [`fosssim_judge::fair`] decides what is right; this asks the same of wrong formulas, within the same bounds.
+//! [`fosssim_judge::fair`] decides what is right; this compares with wrong formulas, within the same bounds.
 //! Coefficients are aligned at the constant one. The course's library has dropped those that the log lacks, for being
 //! small.
 use fosssim_judge::fair::compare::compare;
@@ -11,7 +11,7 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// How much of its bound a coefficient may be off; both sides round.
+/// The share of its bound by which a coefficient may be off; both sides round.
 const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
 /// Returns the logged coefficient of a power, `None` if it was dropped.
@@ -24,7 +24,7 @@ pub(super) fn expected_at(expected: &[BoundedValue], power: usize) -> BoundedVal
     expected.len().checked_sub(power + 1).map_or(BoundedValue::default(), |index| expected[index])
 }
 
-/// Returns whether one logged coefficient is `scale` times the expected one. NaN never is.
+/// Returns whether one logged coefficient is `scale` times the expected one; false for NaN.
 pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, scale: f64) -> bool {
     let room = TOLERANCE * scale.abs() * expected.bound;
     match logged {

@@ -1,4 +1,4 @@
-//! The products that a wrong coefficient may contain: those of the formula's letters, and some that do not belong.
+//! The products that a wrong coefficient may contain: products of the formula's letters, and some foreign ones.
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{
     Inputs, Subject,
@@ -90,8 +90,8 @@ fn products_of_three(count: usize) -> impl Iterator<Item = Vec<usize>> {
         .flat_map(move |one| (one..count).flat_map(move |two| (two..count).map(move |three| vec![one, two, three])))
 }
 
-/// Returns the products with letters from outside: those of the quartic and of half-planes, which stand behind the
-/// formula's own `own` letters.
+/// Returns the products with letters from outside: those of the quartic and of half-planes, which follow the formula's
+/// own `own` letters.
 fn foreign_products(subject: Subject, own: usize) -> Vec<Vec<usize>> {
     let mut lists = Vec::new();
     match subject {

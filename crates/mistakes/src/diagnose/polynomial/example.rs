@@ -27,7 +27,7 @@ fn example(study: &PolynomialStudy, case: &Case) -> Example {
     }
 }
 
-/// Returns how many characters the inputs take.
+/// Returns the number of characters of the inputs.
 fn digits(case: &Case) -> usize {
     given(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }

@@ -1,14 +1,14 @@
-//! Which mistake makes detection polynomials wrong.
+//! Finds the mistake that makes detection polynomials wrong.
 //!
-//! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by how many
-//! samples it reproduces to round-off, right ones included. Guesses are, from simple to intricate: the whole list of
-//! coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared apart),
-//! misunderstandings with a formula of their own, one letter of a formula (`slips`), and the terms of single
-//! coefficients (`terms`: sparse least squares over the products of dot products, with weights that are multiples of
-//! 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may be the one
-//! that is supplied, or the mathematically right one.
+//! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by the number
+//! of samples that it reproduces to round-off, including right ones. Guesses are, from simple to intricate: the whole
+//! list of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared
+//! separately), misunderstandings with a formula of their own, one letter of a formula (`slips`), and the terms of
+//! single coefficients (`terms`: sparse least squares over the products of dot products, with weights that are
+//! multiples of 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may
+//! be the one that is supplied, or the mathematically right one.
 //!
-//! It reads no trace, judges nothing and never looks at decisions or responses.
+//! It reads no trace, judges nothing and never uses decisions or responses.
 mod compare;
 mod dictionary;
 mod example;
@@ -39,24 +39,24 @@ use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use std::collections::BTreeMap;
 use study::{Candidate, PolynomialStudy};
 
-/// The greatest number of guesses about a polynomial that are kept besides the one that is told.
+/// The greatest number of guesses about a polynomial that are kept in addition to the reported one.
 const MOST_CLAIMS: usize = 128;
 
-/// The greatest number of other keys that an explanation tells.
+/// The greatest number of other keys that an explanation reports.
 const MOST_OTHERS: usize = 5;
 
-/// Up to this error, relative to the size of its terms, a polynomial is right but for round-off.
+/// The error, relative to the size of its terms, up to which a polynomial is right except for round-off.
 const NEARLY: f64 = 1e-10;
 
-/// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not told beside it.
+/// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not reported with it.
 const AS_LIKELY: f64 = 1.6;
 
 /// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
-/// none is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is told once.
-/// Counts are of polynomials. A polynomial for which nothing is found gets an explanation with the key `unexplained`
-/// that reproduces nothing.
+/// none is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is reported
+/// once. Counts are of polynomials. A polynomial for which nothing is found gets an explanation with the key
+/// `unexplained` that reproduces nothing.
 ///
-/// Some hundred samples of each kind are enough, of different steps and pairs, right ones among them; samples whose
+/// Some hundred samples of each kind are enough, of different steps and pairs, including right ones; samples whose
 /// formulas overflow are left out. The samples of one kind should hold all of its polynomials.
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
@@ -82,7 +82,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     explanations
 }
 
-/// Tells that no detection of a kind has all its polynomials.
+/// Reports that no detection of a kind has all its polynomials.
 fn missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
@@ -149,8 +149,8 @@ impl Suspect<'_> {
     }
 }
 
-/// Returns the claims of a guess about a polynomial, one word each ([`Explanation::claims`]): one for each exact form
-/// that it may have. The digest is of what the program does, without what it should do.
+/// Returns the claims of a guess about a polynomial, one word each ([`Explanation::claims`]): one for each possible
+/// exact form. The digest is of the program's formula, without the right one.
 fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
         return vec![format!("{subject:?}/{}/", candidate.guess.word())];
@@ -160,7 +160,7 @@ fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     forms.iter().map(|form| form_claim(subject, &candidate.guess, form)).collect()
 }
 
-/// Returns the claim of one exact form. What is said of coefficients follows from it.
+/// Returns the claim of one exact form. The sentences about coefficients follow from it.
 pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
     let guess = match guess {
         Guess::Coefficients { .. } => Guess::Coefficients { powers: Vec::new(), wrong: CoefficientGuess::Several },
@@ -171,7 +171,7 @@ pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDeta
         other => other.clone(),
     };
     let form: Vec<PolynomialDetail> = form.iter().map(bare).collect();
-    // Factors are rounded, which measured ones need.
+    // Factors are rounded, because they are measured.
     format!("{subject:?}/{}/{:016x}", guess.word(), digest(&format!("{guess:?} {form:.5?}")))
 }
 
@@ -205,7 +205,7 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     Detail::Polynomial(detail)
 }
 
-/// Returns all guesses about a polynomial, the one that reproduces most first, among equals the likeliest.
+/// Returns all guesses about a polynomial: the one that reproduces most first, of equal ones the likeliest.
 fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(exchanged_inputs(study));
@@ -253,7 +253,8 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     SPECIALS.iter().filter(|special| special.subject == study.subject).filter_map(of).collect()
 }
 
-/// Returns a polynomial that is right but for more round-off than the rules allow, and that nothing explains better.
+/// Returns a polynomial that is right except for more round-off than the rules allow, and that no guess explains
+/// better.
 fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);
@@ -268,7 +269,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     })
 }
 
-/// Returns one explanation that says for which polynomials there is none.
+/// Returns one explanation with the polynomials for which there is none.
 fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
     let first = hopeless.first()?;
     let lines = |suspect: &Suspect| {
@@ -333,7 +334,7 @@ fn shared(covered: &[Suspect], key: &str) -> Explanation {
     }
 }
 
-/// Returns the first different ones, in their order, no more than `most`.
+/// Returns the first distinct ones, in their order, no more than `most`.
 fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
     let mut list: Vec<T> = Vec::new();
     for one in all {

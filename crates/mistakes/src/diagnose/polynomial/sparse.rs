@@ -1,13 +1,14 @@
-//! Sparse least squares: which few columns add up to a given vector.
+//! Sparse least squares: finds few columns that add up to a given vector.
 //!
 //! Small supports are tried exhaustively by the normal equations of unit columns, larger ones by orthogonal matching
-//! pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar Conference, 1993). What is
-//! found here is a proposal: the caller checks it against every sample.
+//! pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar Conference, 1993). The
+//! result is a proposal: the caller checks it against every sample.
 
 /// A proposal: column indices, ascending, and their weights.
 pub(super) type Support = Vec<(usize, f64)>;
 
-/// A residual whose square is below this share of the target's counts as none; the normal equations give no more.
+/// A residual whose square is below this share of the target's counts as zero; the normal equations are not more
+/// accurate.
 const SMALL_RESIDUAL: f64 = 1e-10;
 
 /// Columns closer to linear dependence than this are not used together.
@@ -19,12 +20,12 @@ const MOST_FOR_TRIPLES: usize = 110;
 /// Most likely columns for which all quadruples are tried.
 const MOST_FOR_QUADRUPLES: usize = 26;
 
-/// Longest support that matching pursuit is asked for.
+/// The longest support that matching pursuit finds.
 const LONGEST: usize = 8;
 
 /// Columns of the same length, ready to be fitted.
 pub(super) struct DesignMatrix {
-    /// Original indices of the columns that are not zero, the likely ones first.
+    /// Original indices of the columns that are not zero, the likely columns first.
     indices: Vec<usize>,
     unit: Vec<Vec<f64>>,
     norms: Vec<f64>,
@@ -33,7 +34,7 @@ pub(super) struct DesignMatrix {
 }
 
 impl DesignMatrix {
-    /// Prepares the columns. `likely` says which of them are tried in larger combinations, too.
+    /// Prepares the columns. Columns in `likely` are tried in larger combinations, too.
     pub fn new(columns: &[Vec<f64>], likely: impl Fn(usize) -> bool) -> Self {
         let norm = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>().sqrt();
         let usable: Vec<usize> = (0..columns.len())
@@ -63,8 +64,8 @@ impl DesignMatrix {
         Self { indices, unit, norms, gram, likely: likely_count }
     }
 
-    /// Proposals for `target`, grouped by size: the caller takes the first group that holds a verified one. At each
-    /// call of `accept` it gets one proposal and says whether it holds. Returns the accepted ones of the smallest size.
+    /// Finds proposals for `target`, grouped by size: the caller takes the first group that holds a verified one. Each
+    /// call of `accept` gets one proposal and returns whether it holds. Returns the accepted ones of the smallest size.
     pub fn supports(&self, target: &[f64], mut accept: impl FnMut(&Support) -> bool) -> Vec<Support> {
         let square = dot(target, target);
         if !(square > 0.0 && square.is_finite()) {
@@ -181,7 +182,7 @@ struct Partial {
 }
 
 impl Problem<'_> {
-    /// Tells all choices of `size` columns among the first `among` that leave no residual.
+    /// Reports all choices of `size` columns among the first `among` that leave no residual.
     fn search(&self, partial: &mut Partial, from: usize, among: usize, size: usize, found: &mut impl FnMut(&[usize])) {
         let count = self.columns.indices.len();
         let depth = partial.chosen.len();

@@ -60,7 +60,7 @@ fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     check(ListGuess::TooLong, None, 8.0, &|case| case.right || case.logged.len() > case.expected.len());
 }
 
-/// Returns whether everything logged is a float and close to what it should be.
+/// Returns whether all logged numbers are floats and close to the expected ones.
 fn is_single(case: &Case) -> bool {
     let single = |value: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "whether the truncation changes it is the question")]

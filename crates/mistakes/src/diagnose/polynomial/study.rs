@@ -22,13 +22,13 @@ const PROBES: usize = 12;
 /// One right sample in this number may speak against a guess, for round-off.
 const SPARED: usize = 50;
 
-/// Ratios of coefficients to what they should be are alike up to this: rounding of coefficients that cancel to a
+/// Ratios of coefficients to the expected ones are equal up to this: rounding of coefficients that cancel to a
 /// ten-thousandth of their terms, and room.
 const ALIKE: f64 = 1e-9;
 
 /// One polynomial of one sample.
 pub(super) struct Case<'a> {
-    /// The place where it comes from.
+    /// The sample from which it comes.
     pub sample: &'a Sample,
     /// The logged coefficients.
     pub logged: &'a [f64],
@@ -36,7 +36,7 @@ pub(super) struct Case<'a> {
     pub inputs: Inputs,
     /// The coefficients that should have been logged; of the quintic the supplied form.
     pub expected: Vec<BoundedValue>,
-    /// Whether the logged ones are right, in any accepted form.
+    /// Whether the logged polynomials are right, in any accepted form.
     pub right: bool,
     /// The positive factor that the submission's polynomials seem to carry here.
     pub scale: f64,
@@ -48,7 +48,7 @@ pub(super) struct PolynomialStudy<'a> {
     pub subject: Subject,
     /// The samples that have it, with finite inputs.
     pub cases: Vec<Case<'a>>,
-    /// How many are wrong.
+    /// The number of wrong polynomials.
     pub wrong: usize,
     probes: Vec<usize>,
 }
@@ -60,17 +60,17 @@ pub(super) struct Candidate {
     pub guess: Guess,
     /// The candidate's exact form.
     pub details: Vec<PolynomialDetail>,
-    /// All exact forms that reproduce as much, the likeliest first; none where there is only one.
+    /// All exact forms that reproduce as much, the likeliest first; empty if there is only one.
     pub forms: Vec<Vec<PolynomialDetail>>,
-    /// How unlikely it is: 1 to 3 for a change of the whole list, about 3 for one factor or sign, 4 for one wrong
-    /// input, 5 and more for wrong letters and foreign terms; edits add up.
+    /// The cost of the guess; a likelier guess costs less. It is 1 to 3 for a change of the whole list, about 3 for one
+    /// factor or sign, 4 for one wrong input, and 5 or more for wrong letters and foreign terms; edits add up.
     pub cost: f64,
     /// The number of samples that it reproduces.
     pub reproduced: usize,
 }
 
 impl<'a> PolynomialStudy<'a> {
-    /// Collects what was logged for a polynomial; `None` if no sample is wrong.
+    /// Collects the logged values of a polynomial; `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::all_of_kind(subject.kind()).iter().position(|&other| other == subject)?;
         let mut cases: Vec<Case<'a>> = samples
@@ -105,9 +105,9 @@ impl<'a> PolynomialStudy<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// Returns how many samples a predicted polynomial reproduces, with the submission's usual scale or none, and with
-    /// any positive one; `None` if it reproduces fewer than half of the wrong samples. The flag says that it needed
-    /// another scale.
+    /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or none,
+    /// and with any positive one; `None` if it reproduces fewer than half of the wrong samples. The flag is set if it
+    /// needed another scale.
     pub fn count(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -123,8 +123,7 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Counts the samples in which a property holds; `None` if it holds in fewer than half of the wrong ones, not in
-    /// the first of them, or only in some wrong ones and not in the right ones: what these speak against explains
-    /// nothing.
+    /// the first of them, or only in some wrong ones and not in the right ones, which then contradict it.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.right).is_some_and(|first| !holds(first)) {
             return None;
@@ -143,19 +142,19 @@ impl<'a> PolynomialStudy<'a> {
             }
         }
         let all_right = self.cases.len() - self.wrong;
-        // A mistake that reproduces all wrong ones may be made under a condition: right ones don't speak against it.
+        // A mistake that reproduces all wrong samples may be made under a condition: right ones don't contradict it.
         let is_enough = wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED);
         is_enough.then_some(wrong + right)
     }
 
-    /// Returns how many samples the right formula reproduces within the tolerance of a guess.
+    /// Returns the number of samples that the right formula reproduces within the tolerance of a guess.
     pub fn plainly_right(&self) -> usize {
         let holds =
             |case: &&Case| matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case);
         self.cases.iter().filter(holds).count()
     }
 
-    /// Returns how far coefficients are off at most, relative to the size of their terms.
+    /// Returns the greatest deviation of coefficients, relative to the size of their terms.
     pub fn error(&self) -> f64 {
         let of_case = |case: &Case| {
             let scale = fitted_scale(&case.expected, case.logged).unwrap_or(case.scale);
@@ -207,7 +206,7 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// Returns the powers whose coefficients have the same ratio to what they should be as the given one, in nearly all
+    /// Returns the powers whose coefficients have the same ratio to the expected ones as the given power, in nearly all
     /// samples.
     fn agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
         let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
@@ -228,7 +227,7 @@ impl<'a> PolynomialStudy<'a> {
             .collect()
     }
 
-    /// Returns how many logged coefficients are as expected with these scales. Dropped ones say nothing: with a small
+    /// Returns how many logged coefficients are as expected with these scales. Dropped ones prove nothing: with a small
     /// scale all of them could be right.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
@@ -241,7 +240,7 @@ impl<'a> PolynomialStudy<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// Says in how many samples each coefficient differs, one line per coefficient that does, with this name of the
+    /// Counts the samples in which each coefficient differs, one line per coefficient that does, with this name of the
     /// polynomial.
     pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {
@@ -261,7 +260,7 @@ impl<'a> PolynomialStudy<'a> {
     }
 }
 
-/// Returns the logged coefficient over the expected one, where that is more than rounding.
+/// Returns the logged coefficient over the expected one, if the difference is more than rounding.
 pub(super) fn ratio(case: &Case, power: usize) -> Option<f64> {
     let expected = expected_at(&case.expected, power);
     let ratio = logged_at(case.logged, power)? / expected.value;
@@ -280,7 +279,7 @@ pub(super) fn spread(length: usize, count: usize) -> impl Iterator<Item = usize>
     (0..count).map(move |index| index * length / count)
 }
 
-/// Returns whether a polynomial has one sure coefficient: it fits anything of its sign at some scale, which says
+/// Returns whether a polynomial has only one sure coefficient: it fits anything of its sign at some scale, which proves
 /// nothing.
 fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     if predicted.iter().filter(|coefficient| is_sure(**coefficient)).count() < 2 {
@@ -289,8 +288,8 @@ fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     fitted_scale(predicted, case.logged).is_some_and(|scale| matches(predicted, case.logged, scale))
 }
 
-/// Forgives samples with a small scale: there the course's library drops coefficients that matter: what is left may say
-/// too little about the scale, but the other samples know it.
+/// Forgives samples with a small scale: there the course's library drops coefficients that matter. The remaining ones
+/// may not show the scale, but the other samples do.
 fn forgive_small_scales(cases: &mut [Case]) {
     let scales = cases.iter().filter(|case| case.right).filter_map(|case| fitted_scale(&case.expected, case.logged));
     let Some(usual) = median(scales.collect()) else { return };
@@ -299,7 +298,7 @@ fn forgive_small_scales(cases: &mut [Case]) {
     }
 }
 
-/// Leaves at most [`MOST_CASES`], most of them wrong ones, in their order.
+/// Keeps at most [`MOST_CASES`] samples, most of them wrong ones, in their order.
 fn thinned(cases: Vec<Case>) -> Vec<Case> {
     if cases.len() <= MOST_CASES {
         return cases;

@@ -12,19 +12,20 @@ use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 /// The number of wrong samples of a fit, which uses half as many right ones.
 const MOST_ROWS: usize = 240;
 
-/// With fewer samples that have the coefficient, those that lack it are looked at, too.
+/// If fewer samples than this have the coefficient, samples that lack it are used, too.
 const FEWEST_ROWS: usize = 12;
 
 /// Weights are multiples of this.
 const WEIGHT_STEP: f64 = 0.25;
 
-/// How far a fitted weight may lie from such a multiple, in multiples: what the normal equations leave of 16 digits.
+/// The greatest distance of a fitted weight from such a multiple, in multiples: the normal equations leave this much of
+/// 16 digits.
 const SNAPPING: f64 = 1e-3;
 
 /// Weights beyond this are no slip.
 const LARGEST_WEIGHT: f64 = 64.0;
 
-/// The greatest number of other explanations of a coefficient that are told.
+/// The greatest number of other explanations of a coefficient that are reported.
 const MOST_ALTERNATIVES: usize = 3;
 
 /// The greatest number of forms of a polynomial that are compared with those of other traces.
@@ -224,7 +225,7 @@ impl<'a> Fitting<'a> {
         term.map_or(0, |term| term.letters.iter().map(|&letter| self.formula.letters[letter].order).sum())
     }
 
-    /// Returns how unlikely an additional weight is.
+    /// Returns the cost of an additional weight.
     fn cost(&self, power: usize, order: u8, (product, change): (usize, f64)) -> f64 {
         let weight = self.dictionary.weight(self.formula, power, product);
         let entry = &self.dictionary.products[product];
@@ -240,7 +241,7 @@ impl<'a> Fitting<'a> {
         }
     }
 
-    /// Returns the samples that a fit looks at: where the coefficient is wrong, and some others.
+    /// Returns the samples that a fit uses: those in which the coefficient is wrong, and some others.
     fn rows(&self, power: usize) -> Vec<usize> {
         let usable = |&index: &usize| {
             let logged = logged_at(self.case(index).logged, power);
@@ -273,7 +274,7 @@ fn snapped(support: &Support) -> Option<Vec<(usize, f64)>> {
         .collect()
 }
 
-/// Guesses as what is told of them.
+/// Converts guesses into the reported values.
 impl Fitting<'_> {
     fn weights(&self, power: usize, (product, change): (usize, f64)) -> (f64, f64) {
         let expected = self.dictionary.weight(self.formula, power, product);

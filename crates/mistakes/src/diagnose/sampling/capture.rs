@@ -31,8 +31,8 @@ impl Capture {
         Self { logs_impulses, has_mid: records.polynomials, ..Self::default() }
     }
 
-    /// Returns where a polynomial belongs: pair, pass, number within the pair; `None` when the reference has no such
-    /// one.
+    /// Returns the place of a polynomial: pair, pass, number within the pair; `None` if the reference has no such
+    /// polynomial.
     pub fn place(&self, index: usize) -> Option<(Pair, Pass, usize)> {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;

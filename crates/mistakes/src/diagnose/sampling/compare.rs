@@ -1,4 +1,4 @@
-//! The log of one step, and when two such logs are the same but for round-off.
+//! The log of one step, and the equality of two such logs except for round-off.
 //!
 //! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
 //! vectors relative to the size of the numbers around them. NaN equals NaN only.
@@ -20,12 +20,12 @@ use fosssim_student::{Contact, Record};
 
 fosssim_model::drops_leading!();
 
-/// How far numbers may be apart.
+/// The greatest differences between equal numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
     /// The tolerance of a coefficient, relative to itself.
     pub coefficient: f64,
-    /// The tolerance of a coefficient, relative to the largest one of its polynomial: where the terms of a coefficient
+    /// The tolerance of a coefficient, relative to the largest one of its polynomial: if the terms of a coefficient
     /// cancel, its round-off is that of the terms.
     pub floor: f64,
     /// The tolerance of a coordinate or a velocity, relative to the largest one of its kind plus 1.
@@ -54,7 +54,7 @@ impl Tolerance {
     }
 }
 
-/// The bound beyond which nobody takes a difference for round-off.
+/// The bound beyond which a difference is clearly no round-off.
 pub const PLAIN: Tolerance = Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
 /// The bound for a step whose states were rounded to single precision before and after.
@@ -90,7 +90,7 @@ impl LoggedNumbers {
 /// The records of one step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StepRecords {
-    /// The mid record, where scenes have one.
+    /// The mid record, if scenes have one.
     pub mid: Option<LoggedNumbers>,
     /// The end record.
     pub end: LoggedNumbers,
@@ -103,7 +103,7 @@ impl StepRecords {
     }
 }
 
-/// Where the records of a step part first.
+/// The first place where the records of a step differ.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepDifference {
     /// This polynomial of the end record.
@@ -141,7 +141,8 @@ impl From<Record> for LoggedNumbers {
     }
 }
 
-/// Returns the first difference in the order in which a step computes; `None` when all is the same but for round-off.
+/// Returns the first difference in the order in which a step computes; `None` when all is the same except for
+/// round-off.
 pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
@@ -229,7 +230,7 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
     sorted(ours).iter().zip(&sorted(theirs)).all(same)
 }
 
-/// Returns whether two contacts are the same but for round-off.
+/// Returns whether two contacts are the same except for round-off.
 pub fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
     let within = by.normal * (1.0 + largest(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)

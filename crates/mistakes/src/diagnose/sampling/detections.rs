@@ -1,9 +1,9 @@
-//! Gathers what explanations of polynomials are made of: detections whose inputs are known for certain, and what the
-//! trace logged for them.
+//! Gathers the data for explanations of polynomials: detections whose inputs are known for certain, and the trace's log
+//! of them.
 //!
 //! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end
-//! is what the integrator makes of it, before any response. So the first pass of each step is looked at, and in hybrid
-//! scenes the first pass of the geometric part, which starts from the mid record.
+//! is what the integrator makes of it, before any response. Therefore it uses the first pass of each step, and in
+//! hybrid scenes also the first pass of the geometric part, which starts from the mid record.
 use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
@@ -13,14 +13,14 @@ use fosssim_model::{
 };
 use fosssim_num::polynomial::Polynomial;
 
-/// One detection of a submission: what went in, and the polynomials that it handed to the root finder.
+/// One detection of a submission: its inputs, and the polynomials that the submission handed to the root finder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// The step, from 1.
     pub step: u32,
     /// The detection pass within the step, from 0.
     pub pass: u32,
-    /// The pair that was looked at. Its kind is that of `motion`.
+    /// The pair of the detection. Its kind is that of `motion`.
     pub pair: Pair,
     /// The inputs, from the submission's own states.
     pub motion: PairMotion,
@@ -66,7 +66,8 @@ impl<'a> Detections<'a> {
         Self { scene, kinds: ByKind::default() }
     }
 
-    /// Gathers the samples of a step. One without result is of a trace gone wild; what was gathered stays.
+    /// Gathers the samples of a step. A step without result belongs to a trace that is wrong beyond use; the samples so
+    /// far stay.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let is_full = self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG);
         if is_full || !Layout::for_scene(self.scene).polynomials {
@@ -91,9 +92,9 @@ struct Gatherer<'a> {
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
     kinds: &'a mut ByKind<OfKind>,
-    /// How many of its polynomials each detection logs; all of them as a rule.
+    /// The number of polynomials that each detection logs; usually all of them.
     sizes: Option<ByKind<usize>>,
-    /// The pass's number and the next polynomial in the list, for passes that are looked at.
+    /// The pass's number and the next polynomial in the list, for passes that are examined.
     next: Option<(u32, usize)>,
 }
 
@@ -105,8 +106,8 @@ impl Gatherer<'_> {
     }
 }
 
-/// Returns how many polynomials each detection logs so that the lists consist of whole passes: all of them if that
-/// fits, else as many as possible. `None` when nothing fits. `pairs` are those of one pass.
+/// Returns the number of polynomials that each detection logs, so that the lists consist of whole passes: all of them
+/// if that fits, else as many as possible. `None` if nothing fits. `pairs` are the pairs of one pass.
 fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize>> {
     let fits = |sizes: &ByKind<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
@@ -130,7 +131,8 @@ fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
     let mut fitting = choices.into_iter().filter(fits);
     let first = fitting.next()?;
-    // Which of two detections is empty numbers alone can't tell, and a wrong guess would make everything look wrong.
+    // The numbers alone don't show which of two detections is empty, and a wrong guess would make everything look
+    // wrong.
     let is_rival = |other: ByKind<usize>| changes(&other) == changes(&first) && is_empty(&other);
     let is_open = is_empty(&first) && fitting.any(is_rival);
     (!is_open).then_some(first)
@@ -165,7 +167,7 @@ impl Steer for Gatherer<'_> {
         }
         let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
         if polynomials.iter().flatten().any(|value| !value.is_finite()) {
-            // NaN and infinity say nothing about a formula.
+            // NaN and infinity prove nothing about a formula.
             return;
         }
         let expected = formulas::BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
@@ -185,7 +187,8 @@ impl Steer for Gatherer<'_> {
     }
 
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
-        // Later pairs of a continuous-time pass see what the submission's responses left, which is not logged.
+        // Later pairs of a continuous-time pass see the positions that the submission's responses left, which are not
+        // logged.
         if matches!(self.scene.collision, Collision::ContinuousTime { .. }) && matches!(decision, Decision::Hit { .. })
         {
             self.next = None;

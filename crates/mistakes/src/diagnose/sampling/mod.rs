@@ -1,5 +1,5 @@
-//! The one way from a trace to what explanations are made of: it is read once, and every step is looked at for wrong
-//! records, for detections, and for numbers that are none. The reference's work for all of it has one budget.
+//! The one way from a trace to the data of explanations: it is read once, and every step is searched for wrong records,
+//! for detections, and for values that are not numbers. The reference's work for all of it has one budget.
 mod capture;
 mod compare;
 mod detections;
@@ -22,11 +22,11 @@ use fosssim_model::scene::Scene;
 
 /// The material of explanations.
 pub struct TraceSamples<'a> {
-    /// The reference, with what is left of its budget.
+    /// The reference, with the rest of its budget.
     pub reference: Reference<'a>,
     /// The explanation of the first value that is no finite number.
     pub not_finite: Option<Explanation>,
-    /// Wrong steps and right ones.
+    /// The chosen wrong and right steps.
     pub scan: Scan,
     /// Detections with known inputs.
     pub detections: Vec<Sample>,

@@ -26,7 +26,7 @@ impl<'a> Reference<'a> {
         Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(TRIALS) }
     }
 
-    /// Returns where a step from this state ends; `None` where it has no result, or nothing is left of the budget.
+    /// Returns the end of a step from this state; `None` if it has no result, or the budget is used up.
     pub fn step(&mut self, step: u32, before: &State, observer: &mut dyn Observer) -> Option<&State> {
         self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);

@@ -19,10 +19,10 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Steps that are kept, wrong and right.
 const MOST_WRONG: usize = 200;
 const MOST_RIGHT: usize = 40;
-/// The first steps that look alike are kept, and then one out of this number.
+/// The first similar steps are kept, and then one out of this number.
 const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
-/// Right steps that look alike.
+/// The number of similar right steps that are kept.
 const RIGHT_ALIKE: u32 = 3;
 /// Wrong steps that are tried first.
 const PROBES: usize = 8;
@@ -38,15 +38,15 @@ pub struct KeptStep {
     pub before: State,
     /// The submission's records.
     pub records: StepRecords,
-    /// Where it differs first from the reference; `None` for right steps.
+    /// The first difference from the reference; `None` for right steps.
     pub difference: Option<StepDifference>,
     /// Facts that show only with the record before.
     pub context: Context,
-    /// Steps with the same one look alike.
+    /// Steps with the same signature are similar.
     pub signature: u64,
 }
 
-/// Facts that the step tells together with the step before.
+/// Facts that follow from the step together with the one before.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Context {
     /// Right, but behind the polynomials of the step before.
@@ -55,7 +55,7 @@ pub struct Context {
     pub impulses_kept: bool,
     /// All positions or all velocities are numbers of single precision, and apart from that it is right.
     pub single_precision: bool,
-    /// Velocities change by what they should and by their change in the step before.
+    /// Velocities change by the expected change plus their change in the step before.
     pub forces_kept: bool,
 }
 
@@ -76,8 +76,8 @@ impl Scan {
         self.right.truncate(MOST_RIGHT);
     }
 
-    /// Returns the wrong steps to be tried first: one of each sort, the cheapest first. The first difference is among
-    /// them, which has to be reproduced, whatever it is.
+    /// Returns the wrong steps to be tried first: one of each sort, the cheapest first. The first difference is always
+    /// among them, because it has to be reproduced.
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
@@ -87,7 +87,7 @@ impl Scan {
     }
 }
 
-/// Looks at the steps of a trace, one after the other.
+/// Examines the steps of a trace, one after the other.
 pub struct Scanner {
     has_mid: bool,
     round_off: Tolerance,
@@ -123,7 +123,7 @@ impl Scanner {
         Scan { outline, wrong, ..self.scan }
     }
 
-    /// Looks at one step, and keeps it if it is of use.
+    /// Examines one step, and keeps it if it is useful.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let StepFrames { before, mid, end } = frames;
         if !before.state.positions.iter().chain(&before.state.velocities).all(|value| value.is_finite())
@@ -151,7 +151,7 @@ impl Scanner {
         } else {
             self.scan.right.len() < MOST_RIGHT && number < RIGHT_ALIKE
         };
-        // The first wrong step is kept whatever it takes: without one there is nothing to explain.
+        // The first wrong step is kept at any cost: without one there is nothing to explain.
         if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }
@@ -163,7 +163,7 @@ impl Scanner {
         if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
     }
 
-    /// Returns a number that steps share which look alike: the same events, and the same first difference.
+    /// Returns a number that similar steps share: they have the same events, and the same first difference.
     fn signature(&self, difference: Option<StepDifference>, actual: &StepRecords) -> u64 {
         let first = match difference {
             None => 0,
@@ -242,7 +242,7 @@ impl KeptStep {
     }
 }
 
-/// Returns whether all numbers are those of single precision.
+/// Returns whether all numbers have single precision.
 fn single(numbers: &[f64]) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "whether it loses anything is the question")]
     let exact = |value: &f64| f64::from(*value as f32).to_bits() == value.to_bits();

@@ -1,4 +1,4 @@
-//! The records of a trace as explanations read them: step by step, as far as they were kept.
+//! The records of a trace as explanations read them: step by step, up to the end of what was kept.
 use super::compare::LoggedNumbers;
 use fosssim_judge::kept::{KeptTrace, LONGEST};
 use fosssim_model::{
@@ -16,7 +16,7 @@ const OPENING_MEMORY: usize = 4 << 20;
 pub struct Source<'a> {
     /// The trace's beginning.
     beginning: &'a [u8],
-    /// Whether that is all of it.
+    /// Whether the whole trace was kept.
     is_whole: bool,
 }
 
@@ -38,7 +38,7 @@ impl<'a> From<&'a KeptTrace> for Source<'a> {
 pub struct StepFrames {
     /// The record before it.
     pub before: LenientFrame,
-    /// The one in its middle, where the scene has one.
+    /// The record in its middle, if the scene has one.
     pub mid: LenientFrame,
     /// The one at its end.
     pub end: LenientFrame,
@@ -54,7 +54,7 @@ pub struct Outline {
     pub padded: u64,
     /// The number of records that the trace has, when its end was reached.
     pub records: Option<u64>,
-    /// Whether the trace goes on after the scene's last step.
+    /// Whether the trace continues after the scene's last step.
     pub is_longer: bool,
 }
 
@@ -66,14 +66,14 @@ impl Outline {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let differs = |ours: &[f64], theirs: &[f64]| {
             let largest = ours.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
-            // A value that is not finite comes from no scene.
+            // A value that is not finite is in no scene.
             ours.iter().zip(theirs).any(|(o, t)| t.is_finite() && (o - t).abs() > FIRST_RECORD * largest)
         };
         let initial = simulation.state();
         differs(&initial.positions, &first.state.positions) || differs(&initial.velocities, &first.state.velocities)
     }
 
-    /// Reads a record. False behind the last sound one: nobody is to blame for the rest of a damaged record.
+    /// Reads a record. Returns false behind the last sound one: the rest of a damaged record proves no mistake.
     fn read(&mut self, reader: &mut Lenient<&[u8]>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,

@@ -1,5 +1,5 @@
-//! The evidence of the impulse lists of `continuous-time`: contacts too many or too few, their vectors and times. And
-//! the order in which pairs are looked at.
+//! The evidence of the impulse lists of `continuous-time`: surplus and missing contacts, their vectors and times, and
+//! the order in which pairs are checked.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -45,7 +45,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
                 && (first..end)
                     .all(|index| same_polynomial(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
         };
-        // The one that belongs there first, then the next one in the order, for pairs that are alike.
+        // The expected pair first, then the next one in the order, for pairs that are similar.
         let own = left.iter().position(|block| block.1 == at && is_here(block));
         let later = left.iter().position(|block| block.0 >= last && is_here(block));
         let Some(index) = own.or(later).or_else(|| left.iter().position(is_here)) else {
@@ -66,7 +66,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
 /// A contact vector that is off by less of its length has lost digits, and nothing else.
 const INEXACT: f64 = 1e-5;
 
-/// The contacts of all steps, beside those of the reference.
+/// The contacts of all steps, with those of the reference.
 #[derive(Default)]
 struct ContactStage {
     /// Kind and time of impact.
@@ -85,8 +85,8 @@ pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
-/// Returns the fault in the contacts at the end of steps, each with the reference's: what parts first counts, since
-/// what follows in the pass may follow from it.
+/// Returns the fault in the contacts at the end of steps, each with the reference's: the first difference counts,
+/// because later ones in the pass may follow from it.
 pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {
@@ -115,13 +115,13 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
 }
 
 impl ContactStage {
-    /// Looks at contacts up to the first that is not the expected one; those behind it depend on that.
+    /// Compares contacts up to the first unexpected one; later ones depend on it.
     fn compare_step(&mut self, facts: &StepFacts) {
         let place = |theirs: &LoggedImpulse| {
             let theirs = theirs.pair()?;
             facts.detections.iter().position(|(pair, _)| *pair == theirs)
         };
-        // With more or fewer polynomials than a pass has, nobody knows which of them a contact belongs to.
+        // If a pass has more or fewer polynomials than expected, a contact can't be assigned to one of them.
         let is_whole = facts.actual.end.polynomials.len() == facts.expected.end.polynomials.len();
         let is_certain = |place: usize| {
             let end = facts.detections.get(place + 1).map_or(facts.expected.end.polynomials.len(), |(_, first)| *first);
@@ -252,7 +252,7 @@ impl ContactStage {
     }
 }
 
-/// Returns the kind that all of these have.
+/// Returns the kind that all of these contacts have.
 fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)

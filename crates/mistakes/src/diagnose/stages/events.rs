@@ -29,7 +29,7 @@ pub(super) struct PassFacts {
     pub(super) stage: Stage,
     /// The index of its first polynomial.
     pub(super) first: usize,
-    /// Where particles end as it begins.
+    /// The ends of particles when it begins.
     pub(super) end: Vec<f64>,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct ZoneFacts {
     pub(super) half_plane: bool,
 }
 
-/// Events that the reference tells besides its records.
+/// Events that the reference reports in addition to its records.
 #[derive(Debug, Default)]
 struct Events {
     hits: Vec<Hit>,
@@ -117,16 +117,16 @@ impl Steer for NoCollisions {
     }
 }
 
-/// A step of the submission beside the reference's.
+/// A step of the submission and the reference's.
 pub(super) struct StepFacts {
     /// Whether anything differs.
     pub(super) is_wrong: bool,
     pub(super) before: State,
-    /// Where the integrator alone leads.
+    /// The state to which the integrator alone leads.
     pub(super) prediction: State,
     pub(super) expected: StepRecords,
     pub(super) actual: StepRecords,
-    /// The first polynomial that differs, or where one of the lists ends.
+    /// The number of right polynomials before the first one that differs, or before the end of one of the lists.
     pub(super) right_polynomials: usize,
     pub(super) hits: Vec<Hit>,
     pub(super) passes: Vec<PassFacts>,
@@ -136,7 +136,7 @@ pub(super) struct StepFacts {
 }
 
 impl StepFacts {
-    /// Returns the facts of a step; none where the reference has no result.
+    /// Returns the facts of a step; `None` if the reference has no result.
     pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
@@ -174,7 +174,7 @@ impl StepFacts {
         ours.len() == theirs.len() && ours.iter().zip(theirs).all(|(one, other)| same_impulse(one, other, &ROUND_OFF))
     }
 
-    /// Returns how many polynomials a pass logs.
+    /// Returns the number of polynomials that a pass logs.
     pub(super) fn pass_size(&self) -> usize {
         self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first)
     }
@@ -193,7 +193,7 @@ impl StepFacts {
         })
     }
 
-    /// Returns how many passes the submission logged before the middle of the step, and how many behind it; none where
+    /// Returns the numbers of passes that the submission logged before and after the middle of the step; `None` if
     /// these are no whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
         let (size, (_, middle)) = (self.pass_size(), self.middles()?);
@@ -203,7 +203,7 @@ impl StepFacts {
     }
 
     /// Returns whether a pass that the submission logged (from 0) is about the motion from the start of the step to
-    /// these positions, as far as these pairs show, named by their places in the order of a pass.
+    /// these positions, judged by these pairs, which are named by their places in the order of a pass.
     pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {
@@ -226,7 +226,7 @@ impl StepFacts {
         self.right_polynomials < ours.min(theirs).min(self.certain_polynomials())
     }
 
-    /// Returns how many polynomials depend on nothing but the state before the step: those of the first pass, in
+    /// Returns the number of polynomials that depend only on the state before the step: those of the first pass, in
     /// `continuous-time` up to the first contact's own.
     fn certain_polynomials(&self) -> usize {
         let contact = self.hits.first().filter(|_| self.is_continuous());
@@ -235,7 +235,7 @@ impl StepFacts {
     }
 }
 
-/// Puts the other form of an edge's approach into what is expected, where that is what was logged: it is right, too.
+/// Expects the other form of an edge's approach if the trace logged that form: it is right, too.
 fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[(usize, Vec<f64>)]) {
     let theirs = &actual.end.polynomials;
     let is_right = |index: usize| same_polynomial(expected.end.polynomials.get(index), theirs.get(index), &ROUND_OFF);

@@ -1,6 +1,6 @@
-//! The impulse rounds of `hybrid`: how many there are, which positions they look at, and what they hand over.
+//! The impulse rounds of `hybrid`: their number, the positions that they use, and the state that they hand over.
 //!
-//! The polynomials of a round say where particles were when it began: what the round before left.
+//! The polynomials of a round show where particles were when it began, which is the result of the round before.
 use super::{ALIKE, Explanation, events::StepFacts, observation, responses::Responses};
 use crate::diagnose::{
     LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber,
@@ -56,7 +56,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
         }
     }
     let sort = |ordering: Ordering| seen.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
-    // Most of what is wrong has to be of this sort; the rest may follow from it.
+    // Most of the faults have to be of this sort; the others may follow from it.
     if seen.is_empty() || 2 * seen.len() < wrong.len() {
         return None;
     }
@@ -75,7 +75,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     Some(observation(StageFault::Rounds(number), details, seen.len()))
 }
 
-/// Returns the steps whose later rounds look at the integrator's positions, which the first round has left.
+/// Returns the steps whose later rounds use the integrator's positions, which the first round has left.
 fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
@@ -94,7 +94,7 @@ fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation
     (count > 0).then(|| observation(StageFault::RoundsOfPrediction, Vec::new(), count))
 }
 
-/// Returns the first number that is another one, but for round-off.
+/// Returns the first number that differs by more than round-off.
 fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     let within = ROUND_OFF.state.max(ALIKE * 1e-3);
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
@@ -137,11 +137,11 @@ fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanatio
 /// The contacts of the first round, as the second detection of a step shows them.
 #[derive(Default)]
 struct SecondPass {
-    /// Isolated ones that led where they should.
+    /// Isolated contacts that led to the right velocities.
     right: usize,
-    /// Isolated ones that did not.
+    /// Isolated contacts that led to wrong velocities.
     wrong: usize,
-    /// Those that changed nothing.
+    /// Contacts that changed nothing.
     unresolved: usize,
     contacts: usize,
 }
@@ -166,7 +166,7 @@ impl SecondPass {
     }
 }
 
-/// Returns the steps whose later rounds are wrong though their first one is right.
+/// Returns the steps whose later rounds are wrong although their first one is right.
 fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
         let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();

@@ -1,10 +1,10 @@
-//! Which stage of a step is wrong, where no mistake that is known explains it.
+//! Finds the wrong stage of a step if no known mistake explains it.
 //!
 //! In a trace the results of a stage follow from those of the one before: polynomials from the state, contacts from the
-//! polynomials, the state in the middle from the contacts, zones from that state. So the first stage whose results are
-//! wrong although everything before is right is the one to look at. The features that its results have in common (a
-//! factor, a kind of pair, a body) say where. These are observations and no guesses. They say nothing of a stage that
-//! something before it may have spoilt, and nothing where a polynomial is wrong whose inputs are known.
+//! polynomials, the state in the middle from the contacts, zones from that state. The first stage whose results are
+//! wrong although everything before is right is therefore the one to check. The features that its results have in
+//! common (a factor, a kind of pair, a body) show the place. These are observations and no guesses. There is none for a
+//! stage that an earlier one may have spoilt, and none if a polynomial is wrong whose inputs are known.
 mod contacts;
 mod events;
 mod loops;
@@ -31,8 +31,8 @@ const MOST_POLYNOMIALS: usize = 200_000;
 /// Ratios that are this close are the same.
 const ALIKE: f64 = 1e-6;
 
-/// Returns the observation about the stages of these steps; none when polynomials whose inputs are known are wrong, or
-/// when nothing is.
+/// Returns the observation about the stages of these steps; `None` if polynomials whose inputs are known are wrong, or
+/// if nothing is wrong.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,

@@ -18,7 +18,7 @@ const SMALL: f64 = 1e-11;
 /// The change that a contact made.
 #[derive(Debug, Clone, Copy)]
 struct Change {
-    /// Along the contact vector, over what it should be; none where that is nothing.
+    /// The ratio to the expected value along the contact vector; `None` if that is zero.
     ratio: Option<f64>,
     /// Whether anything across it changed, too.
     across: bool,
@@ -29,7 +29,7 @@ struct Change {
 pub(super) struct Responses {
     changes: BTreeMap<ChangedQuantity, Vec<Change>>,
     contacts: usize,
-    /// Contacts of impulse rounds that changed nothing: nobody knows whether they were found.
+    /// Contacts of impulse rounds that changed nothing: whether they were found is unknown.
     unresolved: usize,
     in_rounds: bool,
 }
@@ -62,7 +62,7 @@ impl Responses {
         all
     }
 
-    /// Returns whether there are isolated contacts of this kind, and all of them are right.
+    /// Returns whether there are isolated contacts of this kind, and all are right.
     pub(super) fn is_right(&self, kind: PairKind) -> bool {
         let of_kind = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
@@ -109,7 +109,8 @@ impl Responses {
     }
 }
 
-/// Returns the contacts of a step whose bodies have no other one, with the expected and the actual state behind them.
+/// Returns the contacts of a step whose bodies have no other contact, with the expected and the actual state after
+/// them.
 fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a State, &'a State)> {
     let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
     let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);

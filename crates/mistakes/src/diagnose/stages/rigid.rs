@@ -1,7 +1,7 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right.
 //!
-//! Faults in zones show where other zones, moved as they should be, lead where the particles are. Faults in the
-//! failsafe show in zones that are right: those of one contact, or whose particles move as one body.
+//! Faults in zones show if other zones, moved rightly, lead to the places of the particles. Faults in the failsafe show
+//! in zones that are right: those of one contact, or whose particles move as one body.
 use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
@@ -42,8 +42,8 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
 }
 
-/// Returns whether the first geometric pass differs, and is right of where the rounds left the bodies, which is right
-/// within round-off: small coefficients hang on that.
+/// Returns whether the first geometric pass differs only by round-off: it is right for the positions that the rounds
+/// left, which are right within round-off, and small coefficients depend on that.
 fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = behind(facts, 0) / facts.pass_size();
@@ -56,7 +56,7 @@ fn behind(facts: &StepFacts, passes: usize) -> usize {
     facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
-/// Returns the first geometric pass, where it is not about what the impulse rounds left.
+/// Returns the first geometric pass, if it is not about the positions that the impulse rounds left.
 fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_wrong = |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < behind(facts, 1);
     let seen: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
@@ -71,7 +71,7 @@ fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
 }
 
-/// Returns the second geometric pass, where it is about what was there before the failsafe, although that moves
+/// Returns the second geometric pass, if it is about the positions before the failsafe, although the failsafe moves
 /// something.
 fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
@@ -144,7 +144,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
 #[derive(Default)]
 struct ZoneMotions {
     fates: Vec<Fate>,
-    /// Velocities of zones that have to stop, over what they were.
+    /// The ratios of velocities of zones that have to stop to their former velocities.
     stopped: Vec<f64>,
     has_stopped_otherwise: bool,
     /// Zones of several contacts, and of one, whose particles do not keep their distances.
@@ -233,7 +233,7 @@ impl ZoneMotions {
     }
 }
 
-/// How zones that need not stop were moved, over how they should have been.
+/// The ratios of the motion of zones that need not stop to the expected motion.
 #[derive(Default)]
 struct MotionErrors {
     shifts: Vec<f64>,
@@ -261,7 +261,7 @@ impl MotionErrors {
                 [(&expected, ours), (end, theirs)].map(|(state, center)| turn(zone, start, from, state, center));
             let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
-                // Only the rest of such a turn can be seen: it says neither how far nor which way.
+                // Only the rest of such a turn can be seen: it shows neither the angle nor the direction.
                 self.turns.push(if (angle - right).abs() <= LITTLE_TURN { 1.0 } else { f64::NAN });
             } else if right.abs() > LITTLE_TURN {
                 self.turns.push(angle / right);
@@ -312,7 +312,7 @@ impl MotionErrors {
     }
 }
 
-/// Returns how zones turn, of which some do not turn as they should.
+/// Returns the rotations of zones, if some do not turn as expected.
 fn turned(ratios: &[f64]) -> WrongMotion {
     let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
     if wrong().all(|ratio| ratio.abs() <= ALIKE) {

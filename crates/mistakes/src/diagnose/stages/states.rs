@@ -1,5 +1,5 @@
-//! The features of wrong steps where traces log states: contacts at the end of a step, then velocities, then
-//! positions. An observation of these says where to look, and guesses nothing.
+//! The features of wrong steps if traces log states: contacts at the end of a step, then velocities, then positions. An
+//! observation of these names the place to check, and guesses nothing.
 use super::{Explanation, common_value, contacts::explain_overlaps, observation};
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,
@@ -11,7 +11,7 @@ use fosssim_model::{
 };
 use fosssim_num::tolerances::KNOWN_STATE;
 
-/// A number of a state that is not as it should be, with its change and the expected one.
+/// A wrong number of a state, with its change and the expected change.
 struct WrongEntry {
     index: usize,
     quantity: Quantity,

@@ -17,7 +17,7 @@ pub(super) const SMALL: f64 = 1e-9;
 const MOST_PARTICLES: usize = 8;
 const MOST_CONTACTS: usize = 5;
 
-/// A set of particles that are moved as one.
+/// A set of particles that are moved together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Group {
     /// In ascending order.
@@ -38,7 +38,7 @@ impl Group {
         Self::from_particles(particles, groups.iter().any(|group| group.half_plane))
     }
 
-    /// Returns whether it goes back to its start.
+    /// Returns whether it returns to its start.
     pub(super) fn stops(&self, scene: &Scene) -> bool {
         self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
@@ -51,7 +51,7 @@ impl Group {
 /// The fate of a zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fate {
-    /// The expected one.
+    /// The expected zone.
     Right,
     /// The zone was not moved or stopped as it should be.
     Wrong(WrongZones),
@@ -66,19 +66,19 @@ pub(super) struct FirstRound<'a> {
     scene: &'a Scene,
     pub(super) facts: &'a StepFacts,
     pub(super) middle: &'a State,
-    /// The end of the step: what the first round leaves of the zones that are looked at.
+    /// The end of the step: the first round's effect on the examined zones.
     pub(super) end: &'a State,
     pub(super) zones: Vec<Group>,
     /// The zone that each contact makes.
     contacts: Vec<Group>,
     /// The second geometric pass among those that were logged.
     second: usize,
-    /// How often zones were moved.
+    /// The number of rounds in which zones were moved.
     rounds: usize,
 }
 
 impl<'a> FirstRound<'a> {
-    /// Returns the zones of a step; none where the step has no first round, or where something before it is wrong.
+    /// Returns the zones of a step; `None` if the step has no first round, or if something before it is wrong.
     pub(super) fn for_scene(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_middle())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
@@ -105,12 +105,12 @@ impl<'a> FirstRound<'a> {
         self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
     }
 
-    /// Returns whether a zone's particles end where they should, so that nothing can be told of it.
+    /// Returns whether a zone's particles end in the right place, so that it proves nothing.
     pub(super) fn is_at_rest(&self, zone: &Group) -> bool {
         self.are_at(&self.expected(zone), &zone.particles)
     }
 
-    /// Returns the contacts of a zone, one of those that are alike.
+    /// Returns the contacts of a zone, one of each group of similar ones.
     pub(super) fn contacts_of(&self, zone: &Group) -> Vec<&Group> {
         let mut own: Vec<&Group> = Vec::new();
         for contact in self.contacts.iter().filter(|contact| zone.holds(contact)) {
@@ -181,7 +181,7 @@ impl<'a> FirstRound<'a> {
         if stops { self.stop(zone, &stopped) } else { self.motion(zone) }
     }
 
-    /// Returns whether other zones than this one, each moved as it should be, lead where its particles are.
+    /// Returns whether other zones than this one, each moved rightly, lead to the places of its particles.
     fn other_zones(&self, zone: &Group) -> Option<Fate> {
         if self.is_split(zone) {
             return Some(Fate::Wrong(WrongZones::NotMerged));

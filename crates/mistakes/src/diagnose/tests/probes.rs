@@ -92,7 +92,7 @@ fn every_kind_of_pair_collides() {
     }
 }
 
-/// The trace of a student's program; none where it would never end.
+/// The trace of a student's program; none if it would never end.
 fn trace(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
     student::trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }
@@ -119,7 +119,7 @@ fn every_mistake_of_the_simulation_is_found_in_a_probe_scene() {
         .iter()
         .filter(|row| row.kind == RowKind::Wrong && !matches!(row.area, Area::Trace | Area::Process))
         .filter(|row| {
-            // Where the mistake makes the program go on for ever, there is no whole trace to accept.
+            // Where the mistake makes the program go on forever, there is no whole trace to accept.
             scenes.iter().all(|(_, scene)| trace(scene, Some(row)).is_some_and(|trace| is_accepted(scene, &trace)))
         })
         .map(|row| row.id)

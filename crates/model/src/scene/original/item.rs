@@ -41,12 +41,12 @@ impl<'e> Item<'e> {
         self.element.attribute(name)
     }
 
-    /// Returns an integer; `value of` stands in both messages.
+    /// Returns an integer; `value of` is in both messages.
     pub(super) fn index(&self, name: &str) -> Result<i32, Refusal> {
         self.required(name, "value of ", "integer", values::integer)
     }
 
-    /// Returns a scalar; `value of` stands only in the message about a bad one.
+    /// Returns a scalar; `value of` is only in the message about a bad one.
     pub(super) fn numeric(&self, name: &str) -> Result<f64, Refusal> {
         self.required(name, "", "numeric", values::scalar)
     }
@@ -56,7 +56,7 @@ impl<'e> Item<'e> {
         Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
     }
 
-    /// Returns two scalars called real numbers; `value of` stands in both messages.
+    /// Returns two scalars called real numbers; `value of` is in both messages.
     pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
         let real = |name| self.required(name, "value of ", "real number", values::scalar);
         Ok(Vec2::new(real(x)?, real(y)?))

@@ -22,7 +22,7 @@ impl Element<'_> {
 
 /// Joins the lines of a file as the original does: line feeds vanish, a NUL ends everything.
 pub(super) fn join(bytes: &[u8]) -> Vec<u8> {
-    // The NUL is looked for after joining in the original; the order makes no difference.
+    // The original searches for the NUL after joining; the order makes no difference.
     bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()
 }
 
@@ -59,7 +59,7 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
                 depth += usize::from(opens);
             }
             (_, 0) => return Err("expected <"),
-            // Character references are translated in text, too, although nobody reads the result.
+            // Character references are translated in text, too, although no code reads the result.
             _ => drop(cursor.value(b'<')?),
         }
     }
@@ -99,7 +99,7 @@ impl<'t> Cursor<'t> {
         &rest[..length]
     }
 
-    /// Goes behind the next `end`.
+    /// Advances behind the next `end`.
     fn skip_past(&mut self, end: &[u8]) -> Result<(), &'static str> {
         let found = self.rest().windows(end.len()).position(|window| window == end).ok_or(END)?;
         self.at += found + end.len();
@@ -113,7 +113,7 @@ impl<'t> Cursor<'t> {
         self.expect(b'>', CLOSE)
     }
 
-    /// Goes behind this byte.
+    /// Advances behind this byte.
     fn expect(&mut self, byte: u8, otherwise: &'static str) -> Result<(), &'static str> {
         if self.peek(0) != byte {
             return Err(otherwise);
@@ -214,7 +214,7 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// Translates one `&...;`; an unknown name is copied as it stands.
+    /// Translates one `&...;`; an unknown name is copied unchanged.
     fn translate_reference(&mut self, value: &mut Vec<u8>) -> Result<(), &'static str> {
         const NAMED: [(&[u8], u8); 5] =
             [(b"&amp;", b'&'), (b"&apos;", b'\''), (b"&quot;", b'"'), (b"&gt;", b'>'), (b"&lt;", b'<')];

@@ -1,16 +1,16 @@
 //! The original program's lenient scene reader, rule for rule.
 //!
-//! The drop-in command must accept what the original accepts, read the same values from it and refuse the rest with
-//! the same words, so this reader keeps its habits (scene-format.md 1 to 6): lines are joined without a separator, a
-//! number is whatever prefix looks like one, unknown names are ignored, the first problem ends everything. Somebody
-//! who writes scenes is better served by the strict reader, [`crate::scene::read`].
+//! The drop-in command must accept what the original accepts, read the same values from it and reject the rest with the
+//! same words, so this reader keeps its habits (scene-format.md 1 to 6): lines are joined without a separator, a number
+//! is whatever prefix looks like one, unknown names are ignored, the first problem ends everything. Authors of scenes
+//! are better served by the strict reader, [`crate::scene::read`].
 //!
 //! The original's XML parser accepts closing tags of any name, several roots and attributes without white space between
 //! them, and dies of some things that XML allows. No well-kept XML library behaves like that, hence the small parser
 //! in `markup`. It is iterative and borrows from the text, so that neither depth nor size can hurt it.
 //!
 //! A scene that the original goes on to simulate from memory that is not its own (an index out of range) has no defined
-//! outcome; it is refused as [`RefusalKind::Undefined`] in our own words.
+//! outcome; it is rejected as [`RefusalKind::Undefined`] in our own words.
 
 mod item;
 mod markup;
@@ -49,7 +49,7 @@ pub struct Refusal {
     pub explanation: String,
 }
 
-/// The ways in which the original refuses a scene.
+/// The ways in which the original rejects a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RefusalKind {
     /// The original prints a message and exits.

@@ -10,8 +10,9 @@ use crate::{assignments::ForceKind, scene::forces::Source};
 ///
 /// # Errors
 ///
-/// A [`Refusal`] with the original's words where the original refuses or dies, and with ours where it would go on with
-/// memory that is not its own. Of both, a message of the original comes first, wherever it stands in the file.
+/// A [`Refusal`] with the original's words if the original rejects the scene or dies, and with ours if it would
+/// continue with memory that is not its own. Of both, a message of the original comes first, wherever it is in the
+/// file.
 pub fn read(bytes: &[u8]) -> Result<OriginalScene, Refusal> {
     let text = markup::join(bytes);
     let elements = markup::parse(&text).map_err(Refusal::crash)?.ok_or_else(|| {
@@ -91,7 +92,7 @@ impl<'e> RepeatedElements<'e> {
         Item::all(self.elements, name, name)
     }
 
-    /// Returns `index` when it is below `count`; otherwise 0, and the scene will be refused.
+    /// Returns `index` if it is below `count`; otherwise 0, and the scene will be rejected.
     fn within(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
         match usize::try_from(index) {
             Ok(index) if index < count => index,
@@ -169,7 +170,7 @@ impl<'e> RepeatedElements<'e> {
         Ok(colors)
     }
 
-    /// Returns the trails; one of a particle that does not exist has no effect in the original and is left out.
+    /// Returns the trails; a trail of a particle that does not exist has no effect in the original and is left out.
     fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Refusal> {
         let mut paths = Vec::new();
         for item in self.all("particlepath") {

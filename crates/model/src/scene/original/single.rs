@@ -13,7 +13,7 @@ fn refuse<T>(text: &str) -> Result<T, Refusal> {
     Err(Refusal::message(text.as_bytes(), 1))
 }
 
-/// Returns a scalar of a single element, which messages call `kind`; the value is to be `what`.
+/// Returns a scalar of a single element, which messages call `kind`; the value must be `what`.
 fn scalar(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<f64, Refusal> {
     let missing = || refuse(&format!("No {kind} '{name}' attribute specified. Exiting."));
     optional(element, kind, name, what)?.map_or_else(missing, Ok)

@@ -1,4 +1,4 @@
-//! `continuous-time` handling: one pass, each hit answered at once (collisions.md 4).
+//! `continuous-time` handling: one pass, each hit answered immediately (collisions.md 4).
 //!
 //! Later pairs of the pass see the positions that earlier responses left.
 use super::{

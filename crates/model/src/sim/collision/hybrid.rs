@@ -19,7 +19,7 @@ use super::{
 pub(super) struct HybridScratch {
     hits: Vec<Impulse>,
     round_start: Vec<f64>,
-    /// The place where the geometric part stands.
+    /// The state of the geometric part so far.
     state: State,
     builder: Builder,
     zones: Zones,
@@ -27,7 +27,7 @@ pub(super) struct HybridScratch {
     shown: Vec<Zone<'static>>,
 }
 
-/// Handles the impacts of a step. The synchronization point lies after the impulses.
+/// Handles the impacts of a step. The synchronization point is after the impulses.
 ///
 /// # Errors
 /// [`StepError::RootSearch`], [`StepError::Work`]
@@ -71,7 +71,7 @@ pub(super) fn handle<O: Observer>(
         synchronize(observer, state);
         return Ok(());
     }
-    // The geometric part goes on with these values, unless somebody steers otherwise.
+    // The geometric part continues with these values, unless a caller steers otherwise.
     scratch.state.clone_from(state);
     if synchronize(observer, state) == Resume::Synchronized {
         scratch.state.clone_from(state);

@@ -1,4 +1,4 @@
-//! When a pair meets, as far as it has to be known.
+//! The time at which a pair meets, if it has to be known.
 use super::super::{
     observer::Time,
     pair::Pair,
@@ -7,7 +7,7 @@ use super::super::{
 };
 use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_counted, polynomial::Polynomial};
 
-/// Returns the time of impact as far as it has to be known.
+/// Returns the time of impact, if it has to be known.
 ///
 /// # Errors
 /// [`StepError::RootSearch`]

@@ -2,7 +2,7 @@
 //!
 //! One file per pair type holds its detection and its responses; `pass` runs over all pairs, `blocks` over many at a
 //! time; `simple`, `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and
-//! `failsafe`. Nothing is pruned: every pair is looked at in every pass, also two fixed particles (collisions.md 1).
+//! `failsafe`. Nothing is pruned: every pair is checked in every pass, also two fixed particles (collisions.md 1).
 mod blocks;
 mod continuous_time;
 mod failsafe;

@@ -16,7 +16,7 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// How a point moves within a step: on a straight line, at constant speed.
+/// The motion of a point within a step: on a straight line, at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointMotion {
     /// The point's position at the start of the step.
@@ -33,7 +33,7 @@ impl PointMotion {
         Self { start, shift: at(q_end, index) - start }
     }
 
-    /// Returns where it is at `time`, a fraction of the step.
+    /// Returns the position at `time`, a fraction of the step.
     #[must_use]
     pub fn at(&self, time: f64) -> Vec2 {
         self.start + time * self.shift
@@ -167,8 +167,8 @@ impl PairMotion {
         }
     }
 
-    /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` where it is
-    /// zero between a particle and an edge, which is no hit.
+    /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` if it is zero
+    /// between a particle and an edge, which is no hit.
     #[must_use]
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {
@@ -206,7 +206,7 @@ mod tests {
         <halfplane px="0.2" py="-1.1" nx="0.3" ny="1.7"/>
     </scene>"#;
 
-    /// Compares what a pass says of each pair with the pair on its own.
+    /// Compares the results of a pass for each pair with those for the pair on its own.
     struct Compare<'a> {
         scene: &'a Scene,
         calls: usize,

@@ -1,8 +1,8 @@
 //! One detection pass of continuous-time detection over all pairs (collisions.md 1, 2).
 //!
-//! The pass computes the polynomials of every pair, tells them to the observer, and searches their roots where no
-//! certificate excludes an impact within the step. Where the observer wants to hear of no single call,
-//! [`super::blocks`] does the same with several pairs at a time.
+//! The pass computes the polynomials of every pair, passes them to the observer, and searches their roots if no
+//! certificate excludes an impact within the step. If the observer wants no single calls, [`super::blocks`] does the
+//! same with several pairs at a time.
 use super::{
     super::{
         bodies::Bodies,
@@ -23,7 +23,7 @@ use fosssim_num::{
 
 crate::drops_leading!();
 
-/// The reaction of a pass to a hit, before it looks at the next pair.
+/// The reaction of a pass to a hit, before it checks the next pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reaction {
     /// The end positions are as before.
@@ -42,7 +42,7 @@ pub(super) struct Detector {
     step: u32,
     passes: u32,
     displacements: Vec<f64>,
-    /// Whether pairs may be looked at in blocks.
+    /// Whether pairs may be checked in blocks.
     has_lanes: bool,
     blocks: Blocks,
 }
@@ -57,13 +57,13 @@ impl Detector {
             step: 0,
             passes: 0,
             displacements: Vec::new(),
-            // To search always, or to audit, is a way to check what is done elsewhere.
+            // To search always, or to audit, serves to check other results.
             has_lanes: search == RootSearch::WhereNeeded,
             blocks: Blocks::new(steps),
         }
     }
 
-    /// Looks at pairs one by one from now on.
+    /// Checks pairs one by one from now on.
     pub fn forgo_lanes(&mut self) {
         self.has_lanes = false;
     }
@@ -89,8 +89,8 @@ impl Detector {
         self.counts
     }
 
-    /// Looks at every pair on the way from `q_start` to `q_end`. On a hit `react` is called, with the end positions,
-    /// before the next pair is looked at.
+    /// Checks every pair on the way from `q_start` to `q_end`. On a hit `react` is called, with the end positions,
+    /// before the next pair is checked.
     ///
     /// # Errors
     /// [`StepError::RootSearch`] for a pair whose search would never end, [`StepError::Work`] beyond the work that is
@@ -137,7 +137,7 @@ impl Detector {
         Ok(())
     }
 
-    /// Looks at pairs in blocks, as far as that goes. Gives the number of hits.
+    /// Checks pairs in blocks, if that is possible. Returns the number of hits.
     fn run_in_blocks<O: Observer>(
         &mut self,
         bodies: &Bodies,
@@ -168,7 +168,7 @@ impl Detector {
         Ok(hits)
     }
 
-    /// Computes a pair's polynomials, decides about it, tells the observer and has a hit answered.
+    /// Computes a pair's polynomials, decides about it, calls the observer and, on a hit, the response.
     #[inline]
     fn detect<O: Observer, R>(&mut self, pair: Pair, context: &mut PassContext<'_, O, R>) -> Result<(), StepError>
     where

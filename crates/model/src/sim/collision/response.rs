@@ -27,7 +27,7 @@ impl Law {
     }
 }
 
-/// Where a response takes its input from.
+/// The input of a response.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Setting<'a> {
     /// The scene's constants.
@@ -51,7 +51,7 @@ pub(super) struct Change {
     pub position: Vec2,
 }
 
-/// A response: what the first object gains and what the others lose. `None` where a particle is fixed or there is none.
+/// A response: the gain of the first object and the loss of the others. `None` if a particle is fixed or missing.
 ///
 /// The two are kept apart because the original adds one and subtracts the other, which shows in the sign of a NaN.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

@@ -1,7 +1,7 @@
-//! `simple` handling: impulses where bodies overlap at the end of the step and approach (collisions.md 6).
+//! `simple` handling: impulses for bodies that overlap at the end of the step and approach (collisions.md 6).
 //!
-//! Velocities change at once, so that later pairs see them; positions never change. So where nobody asks about pairs
-//! that are apart, only those are looked at that the broad phase finds.
+//! Velocities change immediately, so that later pairs see them; positions never change. If pairs that are apart are not
+//! wanted, only those are checked that the broad phase finds.
 use super::{
     super::{
         bodies::Bodies,
@@ -117,7 +117,7 @@ mod tests {
         },
     };
 
-    /// Asks about every pair.
+    /// Requests every pair.
     struct Everything;
     impl Observer for Everything {}
 

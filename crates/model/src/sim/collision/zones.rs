@@ -38,13 +38,13 @@ impl Zones {
         (0..self.len()).map(|index| self.get(index))
     }
 
-    /// Hands the list of all zones to `hear`; `memory` lends the list its memory.
+    /// Passes the list of all zones to `hear`; `memory` lends the list its memory.
     pub fn show(&self, memory: &mut Vec<Zone<'static>>, hear: impl FnOnce(&[Zone<'_>])) {
         let mut list: Vec<Zone<'_>> = std::mem::take(memory);
         list.extend(self.iter());
         hear(&list);
         list.clear();
-        // Nothing is left to be converted; collecting in place hands the allocation back under the longer lifetime.
+        // The list is empty by now; collecting in place returns the allocation under the longer lifetime.
         *memory = list.into_iter().map(|_| Zone { particles: &[], half_plane: false }).collect();
     }
 }

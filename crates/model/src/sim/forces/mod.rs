@@ -1,8 +1,8 @@
 //! The forces: gradients of their potentials, and the Hessians that the implicit integrators need.
 //!
 //! One file per kind; this one holds the order in which they act and the dispatch over the closed set. All gradients
-//! are accumulated into one array that starts at +0; the penalty force comes last (simulation.md 2, 3). Forces know
-//! nothing of fixed particles: the integrators set their entries to zero.
+//! are accumulated into one array that starts at +0; the penalty force comes last (simulation.md 2, 3). Forces do not
+//! know fixed particles: the integrators set their entries to zero.
 mod constant;
 mod drag;
 mod gravitation;

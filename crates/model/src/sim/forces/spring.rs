@@ -30,7 +30,7 @@ pub(super) fn add_gradient(
     add(gradient, b, damped);
 }
 
-/// Adds the position Hessian of the elastic part, then that of the damping.
+/// Adds the position Hessian of the elastic part, then the damping's.
 pub(super) fn add_position_hessian(
     [a, b]: [usize; 2],
     stiffness: f64,

@@ -11,8 +11,8 @@ use fosssim_num::{
 
 /// Iterates until the update of the velocities is small (or NaN), then advances the state by `dx`, `dv`.
 ///
-/// An iteration depends on `dv` alone, so a `dv` that comes back exactly proves an endless cycle: one is remembered at
-/// each power of two of the count (Brent's method).
+/// An iteration depends on `dv` alone, so a `dv` that recurs exactly proves an endless cycle: one is remembered at each
+/// power of two of the count (Brent's method).
 pub(super) fn advance(
     step: u32,
     system: &mut System<'_>,
@@ -123,7 +123,7 @@ mod tests {
         }
     }
 
-    /// The penalty force has no Hessian: inside the layer the iterates jump in and out for ever.
+    /// The penalty force has no Hessian: inside the layer the iterates jump in and out forever.
     #[test]
     fn an_endless_iteration_is_an_error() {
         let mut scene =

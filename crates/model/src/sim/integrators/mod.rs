@@ -74,7 +74,7 @@ impl Stepper {
             kind: scene.integrator,
             time_step: scene.time_step,
             // The factor of `F = -1 * g` is a multiplication. A compiler that knows it makes it a sign flip, which
-            // differs for NaN: the sign that the original shows for a NaN residual would be the other one.
+            // differs for NaN: the original's sign of a NaN residual would be lost.
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,
@@ -97,7 +97,7 @@ impl Stepper {
         self.implicit.is_some()
     }
 
-    /// Advances `state` by one time step, this one. `steer` hears of the systems that are solved.
+    /// Advances `state` by one time step, this one. `steer` gets the systems that are solved.
     ///
     /// # Errors
     /// [`StepError::Newton`], or [`StepError::Work`] beyond the work that is allowed, from implicit-euler; the state is

@@ -12,7 +12,7 @@ pub(super) struct System<'a> {
     pub forces: &'a mut Forces,
     /// The time step.
     pub h: f64,
-    /// Hears of the matrices that are solved.
+    /// Gets the matrices that are solved.
     pub steer: Option<&'a mut dyn Steer>,
 }
 

@@ -1,9 +1,9 @@
-//! The broad phase: which pairs may be closer than their radii and a margin, found without a look at all pairs.
+//! The broad phase: finds the pairs that may be closer than their radii and a margin, without checking all pairs.
 //!
-//! Particles are sorted into strips by size ([`strips`]); edges, and particles of larger sizes, look for smaller
-//! particles in the rectangle that they reach. Where particles are spread evenly this takes time in proportion to
-//! their number. What is found is a superset, by the same roundings that the forces make: leaving out the others never
-//! changes a bit.
+//! Particles are sorted into strips by size ([`strips`]); edges, and particles of larger sizes, search for smaller
+//! particles in the rectangle that they reach. If particles are spread evenly this takes time in proportion to their
+//! number. The result is a superset, by the same roundings that the forces make: leaving out the others never changes a
+//! bit.
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -18,12 +18,12 @@ const RANGE: f64 = 4.0;
 /// Pairs that are kept, per object. Where there are more, nearly all pairs count, and going through them needs no list.
 const MOST_PAIRS: usize = 32;
 
-/// Below this number of pairs a look at all of them is cheaper.
+/// Below this number of pairs a check of all of them is cheaper.
 const FEWEST_PAIRS: usize = 1 << 10;
 
-/// The pairs that may be near each other, with the memory to look for them again.
+/// The pairs that may be near each other, with the memory for the next search.
 ///
-/// Radii and edges are those of the scene; memory grows with the number of particles and edges.
+/// Radii and edges are the scene's; memory grows with the number of particles and edges.
 #[derive(Debug, Clone)]
 pub(super) struct NearbyPairs {
     radii: Vec<f64>,
@@ -57,7 +57,7 @@ pub(super) struct NearRows<'a> {
 }
 
 impl<'a> NearRows<'a> {
-    /// Returns the later particles, and the edges, that are near a particle. To be asked for particles in their order.
+    /// Returns the later particles, and the edges, that are near a particle. Called for particles in their order.
     pub fn next(&mut self, particle: usize) -> [impl Iterator<Item = usize> + use<'a>; 2] {
         [&mut self.particles, &mut self.edges].map(|list| {
             let (own, later) = list.split_at(list.iter().take_while(|&&pair| apart(pair)[0] <= particle).count());
@@ -68,7 +68,7 @@ impl<'a> NearRows<'a> {
 }
 
 impl NearbyPairs {
-    /// Creates the search for the particles and edges of a scene, when it is cheaper than going through all of them.
+    /// Creates the search for the particles and edges of a scene, if it is cheaper than checking all of them.
     pub fn for_many(scene: &Scene, margin: f64) -> Option<Self> {
         let particles = scene.particles.len();
         (particles * (particles / 2 + scene.edges.len()) >= FEWEST_PAIRS).then(|| Self::new(scene, margin))
@@ -95,7 +95,7 @@ impl NearbyPairs {
         Self { radii, sizes, edges: scene.edges.clone(), margin, most, particles, edge_pairs, tested: 0 }
     }
 
-    /// Looks for the pairs at positions `x` (2N). None when there are too many to be kept: then go through all.
+    /// Finds the pairs at positions `x` (2N). `None` if there are too many to be kept: then the caller checks all.
     pub fn find(&mut self, x: &[f64]) -> Option<NearRows<'_>> {
         let Self { radii, sizes, edges, margin, most, particles, edge_pairs, tested } = self;
         particles.clear();
@@ -136,7 +136,7 @@ impl NearbyPairs {
         Some(NearRows { particles, edges: edge_pairs })
     }
 
-    /// Returns how many pairs were tested so far: the work of all searches.
+    /// Returns the number of tested pairs so far: the work of all searches.
     #[cfg(test)]
     pub fn tested(&self) -> u64 {
         self.tested
@@ -167,7 +167,7 @@ fn widened(reach: f64, places: [Vec2; 2]) -> f64 {
 /// The squares of smaller lengths may be zero when rounded.
 const LEAST_REACH: f64 = 1e-150;
 
-/// Returns all that is not further than `reach` from what lies between two places. None if nothing is.
+/// Returns all that is not further than `reach` from the line between two places. `None` if nothing is.
 fn around(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
         return None;
@@ -195,7 +195,7 @@ fn near_edge(
     let [x2, x3] = ends;
     let x32 = x3 - x2;
     let (squared, room) = (x32.dot(&x32), widened(reach, ends));
-    // Where the edge crosses a row; everywhere, where that is not known well.
+    // The part of a row that the edge crosses; all of it if that is not known well.
     let narrow = |[low, high]: [f64; 2]| {
         let times = [(low - room - x2.y) / x32.y, (high + room - x2.y) / x32.y].map(|time| time.clamp(0.0, 1.0));
         let [from, to] = times.map(|time| x2.x + time * x32.x);

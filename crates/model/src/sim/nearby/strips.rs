@@ -41,9 +41,9 @@ pub(super) struct Strips {
     rows: Vec<Strip>,
     /// The largest radius.
     radius: f64,
-    /// No two of these reach further than this.
+    /// The greatest reach of any two particles.
     reach: f64,
-    /// The width in which squares tell nothing either.
+    /// The width whose square is still too small to decide anything.
     width: f64,
     /// Rows per length.
     density: f64,
@@ -106,10 +106,10 @@ impl Strips {
         }
     }
 
-    /// Hands all pairs to `hear` that may reach each other, each once, as long as it says so. Returns how many were
-    /// tested.
+    /// Calls `hear` for all pairs that may reach each other, each once, until it returns false. Returns the number of
+    /// tested pairs.
     pub fn pairs(&self, mut hear: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
-        // Nothing is closer than zero, and NaN reaches nothing.
+        // No distance is less than zero, and NaN reaches nothing.
         if !(self.reach > 0.0) {
             return 0;
         }
@@ -163,9 +163,9 @@ impl Strips {
         [height(row.saturating_sub(2)), height(row.saturating_add(2))]
     }
 
-    /// Hands all particles in a rectangle to `hear`, as long as it says so. Returns how many were looked at.
+    /// Calls `hear` for all particles in a rectangle, until it returns false. Returns the number of checked particles.
     ///
-    /// `narrow` may cut a row short: it is told the lowest and the highest y of a row, and gives the part of the
+    /// `narrow` may cut a row short: it gets the lowest and the highest y of a row, and returns the part of the
     /// rectangle's width that counts there.
     pub fn within(
         &self,
@@ -200,12 +200,12 @@ fn row_of(y: f64, density: f64) -> i64 {
     row.clamp(FIRST_ROW, LAST_ROW)
 }
 
-/// Sorts entries by row and x: nearly sorted ones with one look at each, others as any list.
+/// Sorts entries by row and x: nearly sorted ones with one comparison each, others as any list.
 fn sort(entries: &mut [PlacedParticle]) {
     let is_before = |one: &PlacedParticle, other: &PlacedParticle| {
         one.row < other.row || one.row == other.row && one.place.x < other.place.x
     };
-    // In a large scene a few of a hundred change rows in a step, and pass all that lies between.
+    // In a large scene a few of a hundred change rows in a step, and pass all entries between.
     let mut moves = 8 * entries.len();
     for index in 1..entries.len() {
         if !is_before(&entries[index], &entries[index - 1]) {

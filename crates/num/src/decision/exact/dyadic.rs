@@ -41,7 +41,7 @@ impl Dyadic {
         let dropped = bits.saturating_sub(53);
         let top = u64::try_from(&self.numerator >> dropped).unwrap_or(0);
         let exact = self.numerator == BigInt::from(top) << dropped;
-        // The value lies between top and top + 1 (or at top) times 2^scale, and is at most 1.
+        // The value is between top and top + 1 (or at top) times 2^scale, and is at most 1.
         let scale = i128::from(dropped) - i128::from(self.exponent);
         let Ok(scale) = i32::try_from(scale) else { return [0.0, f64::from_bits(1)] };
         if scale < -1074 {

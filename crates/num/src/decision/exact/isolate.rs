@@ -5,7 +5,7 @@
 use super::{dyadic::Dyadic, integer::Integer};
 use num_bigint::{BigInt, Sign};
 
-/// Halvings of an isolating interval beyond which its enclosure is narrower than a double can say.
+/// The number of halvings of an isolating interval after which its enclosure is narrower than a double can express.
 const NARROW: u64 = 60;
 
 /// A zero between two times, at which the polynomial is not zero; or at a time, when both are equal.
@@ -65,7 +65,7 @@ impl Root {
 /// intervals may share an end, but no end of an interval is a zero.
 pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     let mut roots = Vec::new();
-    // Intervals to look at, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the
+    // Intervals to check, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the
     // interval as numerator and exponent.
     let mut pending = vec![PendingPart::Interval(polynomial.clone(), BigInt::ZERO, 0)];
     while let Some(next) = pending.pop() {

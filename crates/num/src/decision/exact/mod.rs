@@ -61,8 +61,8 @@ pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
     first_time(&polynomials, &zeros, &mut roots)
 }
 
-/// Walks through the gaps between the roots: the first one, or the first root beside which every polynomial is positive
-/// on one side at least.
+/// Finds the first gap between the roots in which all are positive, or the first root with every polynomial positive on
+/// at least one of its sides.
 fn first_time(polynomials: &[Integer], zeros: &Integer, roots: &mut [Root]) -> ExactAnswer {
     let mut before = signs_at(polynomials, &first_sample(roots));
     if before.iter().all(|&positive| positive) {

@@ -14,7 +14,7 @@ use std::fmt::Write;
 /// The number of groups that are listed where there are at least two more; those that are not accepted come first.
 const GROUPS: usize = 8;
 
-/// Renders the closing lines below the verdict. `alone` says that nothing else stands above them.
+/// Renders the closing lines below the verdict. With `alone` there is nothing else above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
@@ -32,7 +32,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::located(located)));
     }
-    // A fault of the submission itself says it all.
+    // A fault of the submission itself explains everything.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
     let wrong = wrong_scenes(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Grades for people at a terminal: what went wrong, and at the end, where a terminal shows it, what it comes to.
+//! Grades for people at a terminal: first what is wrong, and last, where a terminal shows it, the result.
 
 mod closing;
 mod scenes;
@@ -16,12 +16,12 @@ use std::fmt::Write;
 /// The greatest number of lines shown of a program's output.
 const SHOWN_LINES: usize = 10;
 
-/// How much is shown.
+/// The detail of the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum TextDetail {
     /// A line per submission.
     Line,
-    /// A table with a row for each of several submissions, or what the grading of one comes to.
+    /// A table with a row for each of several submissions; for one submission its result.
     Table,
     /// Also every scene that is not accepted.
     #[default]
@@ -30,7 +30,7 @@ pub enum TextDetail {
     All,
 }
 
-/// Lines that say what to type next about a scene. Those that begin with `$ ` are commands.
+/// The lines of advice on a scene. Lines that begin with `$ ` are commands.
 pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
 
 /// The options of the text.
@@ -38,11 +38,11 @@ pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
 pub struct Text<'a> {
     /// The decoration.
     pub style: Style,
-    /// How much of each submission.
+    /// The detail with which each submission is shown.
     pub shown: TextDetail,
     /// The room for tables, in columns; without it there is no limit.
     pub width: Option<usize>,
-    /// The command to look closer at the first wrong scene.
+    /// The command that shows more of the first wrong scene.
     pub closer: Option<Advice<'a>>,
 }
 
@@ -119,7 +119,7 @@ impl Text<'_> {
     }
 }
 
-/// Returns `, 15 of 20 extra points`; nothing where the suite gives none.
+/// Returns `, 15 of 20 extra points`; empty if the suite gives none.
 #[must_use]
 pub fn extra(grade: &Grade) -> String {
     grade.extra().map_or_else(String::new, |(reached, most)| {
@@ -127,7 +127,7 @@ pub fn extra(grade: &Grade) -> String {
     })
 }
 
-/// Returns the book that counts, where a reader might take it for the other: nothing where both agree.
+/// Returns the name of the book that counts, if a reader might think of the other; empty if both agree.
 fn rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
@@ -141,7 +141,7 @@ fn rules(grade: &Grade) -> String {
     }
 }
 
-/// Returns the look of a scene's verdict.
+/// Returns the style of a scene's verdict.
 const fn verdict_look(verdict: Verdict) -> Look {
     match verdict {
         Verdict::Accepted => Look::Good,

@@ -18,7 +18,7 @@ const NAMED: usize = 3;
 
 /// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    // A fault of the submission itself is not said of each scene.
+    // A fault of the submission itself is not repeated for each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }
@@ -33,14 +33,14 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
 /// The cause of a scene's verdict, in words. Scenes with the same cause are described once.
 type SceneCause = (Verdict, Vec<String>);
 
-/// Returns the cause of a scene that is not accepted: how its program ended, its likely mistakes, or the kind of what
-/// is wrong first. A scene that the rule books judge differently has a cause of its own.
+/// Returns the cause of a scene that is not accepted: the end of its program, its likely mistakes, or the kind of the
+/// first finding. A scene that the rule books judge differently has a cause of its own.
 fn cause(scene: &SceneGrade) -> Option<SceneCause> {
     if scene.verdict.is_accepted() || scene.differs.is_some() {
         return None;
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
-        // Where nothing is logged, it does not matter where that shows first.
+        // If nothing is logged, the first place where that shows does not matter.
         let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
         return Some((scene.verdict, std::iter::once(words::ending(scene)).chain(details).collect()));
     }

@@ -7,7 +7,7 @@ use crate::{
 };
 use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 
-/// A column's cells, its heading first, and where they stand.
+/// A column: its cells, the heading first, and their alignment.
 struct TextColumn {
     cells: Vec<String>,
     right: bool,

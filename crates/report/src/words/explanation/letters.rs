@@ -1,9 +1,9 @@
-//! The meanings of a formula's letters, said where the formula stands.
+//! The meanings of a formula's letters, next to the formula.
 use fosssim_model::sim::PairKind;
 
 /// Returns the sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion,
-/// that occur in these lines; `None` where none does. `R` is the sum of the radii in polynomials, and the rotation
-/// where zones move. The kinds are those of the pairs that the lines speak of, as far as they are known.
+/// that occur in these lines; `None` if none does. `R` is the sum of the radii in polynomials, and the rotation where
+/// zones move. The kinds are those of the pairs in the lines, if they are known.
 pub(super) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
@@ -54,7 +54,7 @@ pub(super) fn radii(line: &str, of_edges: bool) -> String {
     if of_edges { line.replace("r2", "re") } else { line.to_owned() }
 }
 
-/// Returns the words of a line: what is no letter and no digit parts them.
+/// Returns the words of a line: all characters other than letters and digits separate them.
 fn split_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|letter: char| !letter.is_alphanumeric())
 }

@@ -1,7 +1,7 @@
-//! Explanations, in sentences. They travel as values up to here.
+//! Explanations, in sentences. Up to here they are values.
 //!
-//! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) stand with its data,
-//! found by their keys; all others are made here.
+//! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) are in its data, found
+//! by their keys; all others are made here.
 mod letters;
 mod near;
 mod not_finite;
@@ -33,7 +33,7 @@ pub fn what(explanation: &Explanation) -> String {
     sentence
 }
 
-/// Returns the sentence in a list of a program's mistakes: with the others that its traces can't tell from this one.
+/// Returns the sentence in a list of a program's mistakes, with other mistakes that its traces can't distinguish.
 #[must_use]
 pub fn what_or(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
@@ -50,7 +50,7 @@ pub fn what_or(explanation: &Explanation) -> String {
 }
 
 /// Returns the exact form, a line each: which term of which coefficient has which weight. May give the right formula
-/// away. Of a known mistake, which the reference has made, it says nothing of other weights that fit as well.
+/// away. For a known mistake, which the reference has reproduced, other weights that fit are left out.
 #[must_use]
 pub fn details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -83,7 +83,7 @@ pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
     }
 }
 
-/// Returns where in the program to look for what is wrong with a stage of a step.
+/// Returns the place in the program at which a stage of a step may be wrong.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
         About::Stage(fault) => fault.areas().first().map(|area| area.advice()),
@@ -91,7 +91,7 @@ pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     }
 }
 
-/// Returns whether an explanation says more than that nothing is known.
+/// Returns whether an explanation knows more than that something is wrong.
 pub(crate) fn is_known(explanation: &Explanation) -> bool {
     !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }
@@ -126,7 +126,7 @@ fn empty_stage(row: &Row) -> String {
     name.to_owned()
 }
 
-/// Returns the sentence for a mistake in a step without collisions: the row's name says what it is about.
+/// Returns the sentence for a mistake in a step without collisions: the row's name is its subject.
 fn look_at_step(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {

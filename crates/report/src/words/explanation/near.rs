@@ -12,7 +12,7 @@ struct PairFault<'a> {
     traits: Vec<PairTrait>,
 }
 
-/// Kinds with the same fault and the same traits are one.
+/// Kinds with the same fault and the same traits are reported together.
 fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     let mut all: Vec<PairFault<'_>> = Vec::new();
     for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.kinds.iter().map(move |pairs| (times, pairs))) {
@@ -33,11 +33,11 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     all
 }
 
-/// Returns the pairs, what happens to them, and what they have in common.
+/// Returns the pairs, what happens to them, and their common traits.
 pub(super) fn what(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
-    // Of pairs that press on each other, velocities may tell too much.
+    // Velocities of pairs that press on each other may reveal too much.
     if 50 * (once + twice) <= missing {
         return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
     }
@@ -55,7 +55,7 @@ pub(super) fn what(wrong: &WrongPairs) -> String {
     format!("Near pairs: {}.", told.join(". Besides, "))
 }
 
-/// Returns the first pair, how many there are, and the exact form of what they have in common.
+/// Returns the first pair, the number of pairs, and the exact form of their common traits.
 pub(super) fn details(wrong: &WrongPairs) -> Vec<String> {
     let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairWords(pair)));
     let of_fault = |fault: &PairFault<'_>| {
@@ -76,7 +76,7 @@ const fn happens(times: usize) -> &'static str {
     if times == 0 { "missing" } else { "reported twice" }
 }
 
-/// Returns how many of the pairs of a kind are reported this number of times.
+/// Returns the number of pairs of a kind that are reported this number of times.
 const fn share(pairs: &PairCounts, times: usize) -> &'static str {
     match pairs.times[1] {
         0 => "all",

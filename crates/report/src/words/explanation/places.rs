@@ -1,9 +1,9 @@
-//! Where examples lie.
+//! The places of examples.
 use fosssim_judge::PairWords;
 use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
 use fosssim_model::sim::{Pair, PairKind};
 
-/// Returns where in its step an example lies, and what its numbers are.
+/// Returns the place of an example in its step, and the meaning of its numbers.
 pub(crate) fn place(place: &ExamplePlace) -> String {
     match place {
         ExamplePlace::Given { pair, pass, subject } => {

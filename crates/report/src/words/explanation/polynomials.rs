@@ -84,12 +84,12 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
     }
 }
 
-/// Returns the meaning of a letter; nothing where its name says it.
+/// Returns the meaning of a letter; nothing if its name explains it.
 fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
     letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }
 
-/// Returns a letter with what it means.
+/// Returns a letter with its meaning.
 fn described(reading: Reading, name: &str) -> String {
     meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
 }

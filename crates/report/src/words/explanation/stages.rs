@@ -11,7 +11,7 @@ pub(super) fn what(fault: &StageFault) -> String {
     format!("{}: {}.", place(fault), capitalized(&describe_fault(fault)))
 }
 
-/// Returns the parts of the assignment in which it may lie, with the kind of pair that alone it concerns.
+/// Returns the parts of the assignment that may hold it, with the only kind of pair that it concerns, if there is one.
 fn place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
@@ -150,7 +150,7 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Returns a line of the exact form; nothing where a number would say nothing.
+/// Returns a line of the exact form; nothing if a number would add nothing.
 pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
@@ -204,7 +204,7 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     })
 }
 
-/// Returns whether a measured ratio is this one.
+/// Returns whether a measured ratio equals this one.
 fn is(ratio: f64, value: f64) -> bool {
     (ratio - value).abs() < 1e-9
 }

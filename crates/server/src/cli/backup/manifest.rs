@@ -46,10 +46,10 @@ impl Manifest {
         fs::write(folder.join(FILE), text).context("the backup's manifest can't be written")
     }
 
-    /// Reads that of a backup.
+    /// Reads the manifest of a backup.
     ///
     /// # Errors
-    /// When the folder is no backup, or one of a newer program.
+    /// If the folder is no backup, or one of a newer program.
     pub(super) fn read(folder: &Path) -> Result<Self> {
         let file = folder.join(FILE);
         let text = fs::read_to_string(&file)

@@ -1,5 +1,5 @@
-//! `backup` and `restore`: everything that the server keeps, in a folder that says what it holds. The database is
-//! copied first: what it names lies in the store before it is named.
+//! `backup` and `restore`: everything that the server keeps, in a folder with a manifest. The database is copied first,
+//! because the store has an artifact before the database names it.
 mod manifest;
 mod postgres;
 mod restore;
@@ -68,7 +68,7 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
         database: Copy { file: name.to_owned(), sha256: copy.digest, bytes: copy.size },
         artifacts,
     };
-    // Everything is on the disk before the manifest says so.
+    // Everything is on the disk before the manifest is written.
     rustix::fs::syncfs(fs::File::open(folder)?)?;
     manifest.write(folder)?;
     rustix::fs::syncfs(fs::File::open(folder)?)?;
@@ -87,7 +87,7 @@ async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
         let file = place.join(rest);
         match store.fetch(&digest, &file).await {
             Ok(()) => {}
-            // Given up meanwhile: nothing names it. Or it is there twice, as what is put aside may be.
+            // Removed meanwhile: nothing names it. Or it exists twice, as an artifact that is put aside may.
             Err(crate::store::StoreError::Missing(_)) => continue,
             Err(_) if file.exists() => continue,
             Err(error) => return Err(error.into()),

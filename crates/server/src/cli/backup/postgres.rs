@@ -1,5 +1,5 @@
-//! PostgreSQL's own tools, which copy a database consistently while others write. They are told the password by
-//! a variable, so that no list of processes shows it.
+//! PostgreSQL's own tools, which copy a database consistently while others write. They get the password by a variable,
+//! so that no list of processes shows it.
 use anyhow::{Context, Result, bail};
 use std::{path::Path, process::Stdio};
 use tokio::process::Command;
@@ -40,7 +40,7 @@ pub(super) async fn dump(address: &str, file: &Path) -> Result<()> {
     run("pg_dump", address, &["--format=custom", "--no-owner", "--no-privileges", "--file"], file).await
 }
 
-/// Brings such a copy into an empty database, all of it or nothing.
+/// Loads such a copy into an empty database, all of it or nothing.
 pub(super) async fn load(address: &str, file: &Path) -> Result<()> {
     let words = ["--no-owner", "--no-privileges", "--single-transaction", "--exit-on-error"];
     run("pg_restore", address, &words, file).await

@@ -1,5 +1,5 @@
 //! `restore`: a backup becomes a data folder again. The database comes last: a server that is started too early finds
-//! none, and no half of one.
+//! no database instead of half of one.
 use super::{
     super::{arguments::RestoreArguments, folders::ServiceFolders},
     manifest::{Artifacts, Manifest},
@@ -16,7 +16,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Restores a backup into an empty data folder and, where there is one, an empty database.
+/// Restores a backup into an empty data folder and, if there is one, an empty database.
 pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
@@ -96,7 +96,7 @@ fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     Ok(fs::rename(&partial, file)?)
 }
 
-/// Stores every file of a folder of artifacts, each of which must be what its name says.
+/// Stores every file of a folder of artifacts. Each file's bytes must match its name.
 async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut put = Artifacts::default();
     if !folder.exists() {

@@ -17,16 +17,16 @@ const SESSION: i64 = 14 * 24 * 3600 * 1000;
 /// The most sessions of an account: the oldest ends when another one begins.
 const SESSIONS: i64 = 50;
 
-/// How long a link that signs in is good for.
+/// The time for which a sign-in link is valid.
 const LINK: i64 = 7 * 24 * 3600 * 1000;
 
-/// How long after its beginning a session may make further ways in: tokens, a first password.
+/// The time after its beginning in which a session may create further ways to sign in: tokens, a first password.
 const RECENT: i64 = 12 * 3600 * 1000;
 
-/// A session that was not seen for so long is noted again.
+/// The time after which a session's last use is noted again.
 const SEEN_EVERY: i64 = 3600 * 1000;
 
-/// Tokens of people and of workers begin with these: anybody who finds one knows its kind, and so do scanners.
+/// The first letters of tokens of people and of workers: they show finders and scanners the kind of token.
 pub(in crate::domain) const PERSON: &str = "fso_";
 pub(in crate::domain) const WORKER: &str = "fsw_";
 
@@ -39,7 +39,7 @@ impl NewSecret {
         Self(format!("{prefix}{}{}", random_hex(), random_hex()))
     }
 
-    /// Returns the secret itself, for the one it belongs to.
+    /// Returns the secret itself, for its owner.
     pub fn reveal(&self) -> &str {
         &self.0
     }
@@ -80,11 +80,11 @@ pub struct NewToken {
 /// A link that signs in once, good for a week.
 #[derive(Serialize, ToSchema)]
 pub struct Link {
-    /// The link; nothing where the account was there before.
+    /// The link; `None` if the account existed.
     pub link: Option<String>,
 }
 
-/// How somebody came in.
+/// The way in which a person signed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::domain) enum Way {
     /// By their password, a learning platform, or a link that the server or an administrator made.
@@ -104,11 +104,11 @@ pub(in crate::domain) struct SessionState {
     pub(in crate::domain) is_by_token: bool,
     /// Whether it was begun lately.
     pub(in crate::domain) is_recent: bool,
-    /// Whether it is to be noted as seen.
+    /// Whether its last use must be noted.
     pub(in crate::domain) is_stale: bool,
 }
 
-/// Returns the digest of a secret, which the database keeps. Random as the secret is, nobody finds it by trying.
+/// Returns the digest of a secret, which the database keeps. The secret is random, so it can't be found by trying.
 pub(in crate::domain) fn digest(secret: &str) -> String {
     hex(&Sha256::digest(secret))
 }
@@ -151,13 +151,13 @@ pub(in crate::domain) async fn account_of_session(
     Ok(Some((Account::from_row(&row)?, seen)))
 }
 
-/// Lets a session last from now on.
+/// Extends a session from now on.
 pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
     transaction.execute(statement, values![SESSION, digest(session)]).await.map(drop)
 }
 
-/// Begins a session, whose secret goes into a cookie.
+/// Begins a session, and returns its secret for a cookie.
 pub(in crate::domain) async fn begin_session(
     transaction: &mut Transaction,
     account: i64,
@@ -182,8 +182,8 @@ pub(in crate::domain) async fn end_session(transaction: &mut Transaction, sessio
     transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
-/// Makes a link that signs in once; earlier ones of the account that were not used are void. Whether it is vouched for
-/// by a course's staff only, `way` says.
+/// Makes a link that signs in once; earlier ones of the account that were not used are void. `way` states whether only
+/// a course's staff vouches for it.
 pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
@@ -208,13 +208,13 @@ pub(in crate::domain) async fn further_link(
     Ok(secret)
 }
 
-/// Returns whether a link would sign somebody in.
+/// Returns whether a link can still be used to sign in.
 pub(in crate::domain) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
     let statement = "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}";
     Ok(transaction.row(statement, values![digest(link)]).await?.is_some())
 }
 
-/// Uses up a link, and says whose it was, and how they come in.
+/// Uses up a link, and returns its owner and the way in which the owner signs in.
 pub(in crate::domain) async fn use_link(
     transaction: &mut Transaction,
     link: &str,
@@ -225,7 +225,7 @@ pub(in crate::domain) async fn use_link(
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
-    // Anybody who needs a link has forgotten the password: the next one is set without it.
+    // A person who needs a link has forgotten the password: the next one is set without it.
     let statement = "UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id";
     let able = transaction.row(statement, values![account]).await?;
     Ok(able.map(|_| (account, way)))
@@ -280,7 +280,7 @@ pub(in crate::domain) async fn new_token(
     Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }
 
-/// Returns whether a character has no look of its own, or turns the letters around it.
+/// Returns whether a character is invisible, or turns the letters around it.
 pub(in crate::domain) fn is_control(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{ad}' | '\u{115f}' | '\u{1160}' | '\u{180e}' | '\u{200b}'..='\u{200f}'

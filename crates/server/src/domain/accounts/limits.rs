@@ -18,13 +18,13 @@ static OF_ALL: Semaphore = Semaphore::const_new(3000);
 /// The time that an upload waits for others of the same account.
 const TURN: Duration = Duration::from_secs(30);
 
-/// Archives of an account that may be refused in a minute.
+/// The rejected archives that an account may send in a minute.
 const REFUSED: u32 = 30;
 
 /// A mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// The limits, and what is being done at the moment.
+/// The limits, and the transfers that are under way.
 #[derive(Debug, Default)]
 pub struct TransferLimits {
     /// Up- and downloads of one account at one time.
@@ -49,7 +49,7 @@ pub struct Transfer {
 }
 
 impl TransferLimits {
-    /// Limits of these sizes.
+    /// Creates limits of these sizes.
     pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
         Self { transfers, student, course, server, ..Self::default() }
     }
@@ -64,7 +64,7 @@ impl TransferLimits {
         Ok(Transfer { _of_account: of_account, _of_all: of_all })
     }
 
-    /// Waits until nobody else hands in for an account by this server.
+    /// Waits until no other upload for an account is handled by this server.
     pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
         let turn = shared(&self.turns, account, Default::default);
         let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
@@ -72,7 +72,7 @@ impl TransferLimits {
     }
 }
 
-/// Returns the thing that the tasks of an account share, while one of them holds it.
+/// Returns the value that the tasks of an account share, while one of them holds it.
 fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, one| Arc::strong_count(one) > 1);
@@ -80,10 +80,10 @@ fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce()
 }
 
 impl Member {
-    /// Gives leave to send or receive a file.
+    /// Permits sending or receiving a file.
     ///
     /// # Errors
-    /// When the account, or all together, have as many under way as they may.
+    /// When the account, or all together, reach their limit of transfers.
     pub fn transfer(&self) -> Result<Transfer, Problem> {
         self.app.limits.transfer(self.account.id)
     }
@@ -120,7 +120,7 @@ impl Member {
         Ok([kept("student", limits.student)?, kept("course", limits.course)?, kept("server", limits.server)?])
     }
 
-    /// Returns the sentences about the room for uploads: to staff about their course, and to everybody about a share
+    /// Returns the sentences about the room for uploads: to staff about their course, and to everyone about a share
     /// that is nearly full.
     ///
     /// # Errors

@@ -1,9 +1,9 @@
-//! Passwords, for servers that allow them: a way in beside links and tokens.
+//! Passwords, for servers that allow them: a way to sign in next to links and tokens.
 //!
 //! They are kept as Argon2id digests with the parameters that OWASP recommends (Password Storage Cheat Sheet: 19 MiB,
 //! two passes, one lane). Each check costs that memory and some hundredths of a second of a core, so that only a few
-//! run at one time. Wrong ones slow down the address that they come from, and never the person: from another address
-//! the right one goes on working.
+//! run at one time. Wrong passwords slow down the address that sends them, never the person: from another address the
+//! right password still works.
 use crate::domain::{
     App, NewSecret, Person, Throttle, Visitor,
     accounts::identity::{self, Way},
@@ -27,7 +27,7 @@ const COST: (u32, u32, u32) = (19 * 1024, 2, 1);
 /// Digests that are computed at one time: more would only cost memory.
 static ROOM: Semaphore = Semaphore::const_new(2);
 
-/// How long somebody waits for their turn.
+/// The longest wait for a turn.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Wrong passwords in a minute from one address, for one login.
@@ -39,7 +39,7 @@ const TRIES_OF_ADDRESS: u32 = 60;
 /// The greatest length of a password.
 const LENGTH: std::ops::RangeInclusive<usize> = 10..=200;
 
-/// The parts that passwords need: none of them is there on a server that does not allow passwords.
+/// The parts that passwords need: a server that does not allow passwords has none of them.
 #[derive(Debug, Default)]
 pub struct Passwords {
     tries: Throttle,
@@ -56,8 +56,8 @@ fn digest(password: &str, salt: &str) -> Result<String, Problem> {
     Ok(format!("argon2id$m={},t={},p={}${salt}${}", COST.0, COST.1, COST.2, hex(&key)))
 }
 
-/// Returns whether a password is the one that is kept. Without one the same work is done, so that the time tells nobody
-/// who has one.
+/// Returns whether a password matches the kept one. Without a kept password the same work is done, so that the time
+/// reveals nothing.
 fn is_kept(password: &str, kept: Option<&str>) -> Result<bool, Problem> {
     let salt = kept.and_then(|kept| kept.split('$').nth(2)).unwrap_or("0123456789abcdef0123456789abcdef");
     let digest = digest(password, salt)?;
@@ -81,7 +81,7 @@ async fn in_turn<T: Send + 'static>(work: impl FnOnce() -> Result<T, Problem> + 
 }
 
 impl Passwords {
-    /// Counts a try to be somebody, also somebody who does not exist, until it turns out to be right.
+    /// Counts a try to sign in, also for an unknown name, until it proves right.
     fn try_of(&self, address: Option<IpAddr>, login: &str) -> Result<Try<'_>, Problem> {
         let bucket = |word: &str| throttle::bucket(address, word);
         // No login is empty.
@@ -125,8 +125,8 @@ impl Visitor {
     /// Signs in with a password.
     ///
     /// # Errors
-    /// When it is not the account's, there is no such account, or there were too many tries. Which of the first two,
-    /// nobody learns.
+    /// When it is not the account's, there is no such account, or there were too many tries. The first two are not
+    /// distinguished.
     pub async fn sign_in_by_password(&self, login: &str, password: &str) -> Result<NewSecret, Problem> {
         let passwords = self.app.passwords()?;
         let attempt = passwords.try_of(self.secrets.address, login)?;
@@ -152,12 +152,12 @@ impl Visitor {
 }
 
 impl Person {
-    /// Sets one's own password, or changes it; anybody who has one shows it. All sessions end, so that anybody who
-    /// signed in by the old one is out, and so does what was made by links of a course's staff: the account is this
-    /// person's own.
+    /// Sets or changes one's own password; a change requires the old one. All sessions end, so that the old password
+    /// signs nobody in any more, and so does all that links of a course's staff made: the account belongs to this
+    /// person alone.
     ///
     /// # Errors
-    /// When the old one is wrong, the new one too short, or they did not sign in lately.
+    /// When the old one is wrong, the new one is too short, or the person did not sign in lately.
     pub async fn set_password(&self, old: &str, new: &str) -> Result<(), Problem> {
         let passwords = self.app.passwords()?;
         if !LENGTH.contains(&new.chars().count()) || new == self.account.login || new.chars().any(char::is_control) {

@@ -1,5 +1,6 @@
-//! How many requests an account may make: a bucket of tokens for each that fills by itself. By account and not by
-//! address: a lecture hall behind one address is many people. Ways in are counted by address, of which one has many.
+//! Limits the requests of an account: each has a bucket of tokens that refills by itself. Requests count by account and
+//! not by address, because a whole lecture hall may share an address. Sign-ins count by address, because one address
+//! has many accounts.
 use std::{
     collections::HashMap,
     hash::{DefaultHasher, Hash, Hasher},
@@ -16,7 +17,8 @@ const MANY: usize = 10_000;
 pub struct Throttle(Mutex<HashMap<i64, (f64, Instant)>>);
 
 impl Throttle {
-    /// Takes a token from an account's bucket, which holds at most those of a minute; whether there was one.
+    /// Takes a token from an account's bucket, which holds at most one minute's tokens, and returns whether there was
+    /// one.
     pub(in crate::domain) fn pass(&self, account: i64, per_minute: u32, now: Instant) -> bool {
         let most = f64::from(per_minute);
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -33,7 +35,7 @@ impl Throttle {
         passes
     }
 
-    /// Puts a token back: what it was taken for is not to count.
+    /// Puts a token back, so that its use does not count.
     pub(in crate::domain) fn put_back(&self, account: i64) {
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((level, _)) = buckets.get_mut(&account) {
@@ -42,7 +44,7 @@ impl Throttle {
     }
 }
 
-/// Returns the bucket of an address for something. Of the newer addresses everybody has 2^64: the network counts.
+/// Returns the bucket of an address for a purpose. A user of IPv6 has 2^64 addresses, so there the network counts.
 pub(in crate::domain) fn bucket(address: Option<IpAddr>, what: &str) -> i64 {
     let network = address.map(|address| match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),

@@ -1,5 +1,5 @@
-//! Turns to have an archive looked through, which may take a processor for seconds. An account has one at a time, and
-//! the one that took least lately goes first: nobody waits for somebody else's bad uploads.
+//! Turns to have an archive examined, which may use a processor for seconds. An account has one turn at a time, and the
+//! account that used least lately goes first: no account waits for another's bad uploads.
 use crate::problem::Problem;
 use std::{
     collections::{BTreeMap, HashMap},
@@ -8,10 +8,10 @@ use std::{
 };
 use tokio::sync::Notify;
 
-/// Archives that are looked through at one time: each may need some 100 MiB, and all of a processor.
+/// The number of archives that are examined at one time: each may need some 100 MiB, and all of a processor.
 const AT_ONE_TIME: usize = 2;
 
-/// For so long somebody waits for their turn.
+/// The longest wait for a turn.
 const PATIENCE: Duration = Duration::from_secs(60);
 
 /// The time that an account took counts half after this many seconds.
@@ -34,14 +34,14 @@ struct TurnParts {
 struct TurnState {
     /// Accounts that have their turn.
     running: Vec<i64>,
-    /// Those that wait, by the number of their ticket.
+    /// Waiting accounts, by the number of their ticket.
     waiting: BTreeMap<u64, i64>,
     next: u64,
     /// The seconds that accounts took, and when that was counted.
     taken: HashMap<i64, (f64, Instant)>,
 }
 
-/// A turn, or a place among those who wait, until it is dropped.
+/// A turn, or a place in the queue, until it is dropped.
 #[derive(Debug)]
 pub struct ArchiveTurn {
     turns: Turns,
@@ -56,7 +56,7 @@ impl TurnState {
         seconds * 0.5_f64.powf(now.saturating_duration_since(*at).as_secs_f64() / HALF_LIFE)
     }
 
-    /// Returns the ticket that is next, if anybody may go now.
+    /// Returns the ticket that is next, if a turn is free.
     fn first(&self, now: Instant) -> Option<u64> {
         let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
         let rank = |(ticket, account): &(&u64, &i64)| (self.taken(**account, now), **ticket);

@@ -17,12 +17,12 @@ use utoipa::{
     openapi::{KnownFormat, ObjectBuilder, OneOfBuilder, Schema, SchemaFormat, Type},
 };
 
-/// How an assignment is graded, and what may be handed in.
+/// The rules by which an assignment is graded, and what may be handed in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// A suite that comes with the grader, `t2m2` for example; its default, if none is named. One that was uploaded
-    /// goes before it.
+    /// A suite that comes with the grader, such as `t2m2`; its default, if none is named. An uploaded suite has
+    /// precedence.
     #[schema(pattern = "^([A-Za-z0-9_][A-Za-z0-9._-]*(@[A-Za-z0-9_][A-Za-z0-9._-]*)?)?$", max_length = 100)]
     pub suite: String,
     /// The digest of an archive with a `suite.toml`; uploaded by its own request.
@@ -33,7 +33,7 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(parity|fair|both)$")]
     pub rules: Option<String>,
-    /// How much reports tell: `none`, `where`, `what` or `full`; without it the suite decides.
+    /// The detail that reports show: `none`, `where`, `what` or `full`; without it the suite decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(none|where|what|full)$")]
     pub hints: Option<String>,
@@ -43,7 +43,7 @@ pub struct Settings {
     /// The program's name in a folder of sources.
     #[schema(value_type = crate::schema::FileName)]
     pub program: String,
-    /// After this many seconds a grading is stopped, and what it has so far counts. At most an hour.
+    /// The seconds after which a grading is stopped; its results so far count. At most an hour.
     #[schema(minimum = 1, maximum = 3600)]
     pub seconds: u64,
     /// The largest upload, in bytes. At most a gigabyte.
@@ -60,10 +60,10 @@ pub struct Settings {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "moment")]
     #[schema(schema_with = moment_schema)]
     pub due_at: Option<i64>,
-    /// The days after the due date in which uploads are still taken, at a price.
+    /// The days after the due date in which uploads are still accepted, with a deduction.
     #[schema(maximum = 365)]
     pub late_days: u32,
-    /// How many percent of the grader's points a submission loses for each day that has begun after it was due.
+    /// The percentage of the grader's points that a submission loses for each day begun after it was due.
     #[schema(maximum = 100)]
     pub late_percent: u32,
     /// The time zone by whose calendar late days end, such as `Europe/Berlin`; without it each has 24 hours.
@@ -72,7 +72,7 @@ pub struct Settings {
     pub time_zone: Option<Tz>,
 }
 
-/// Settings that always say something.
+/// Settings that always have a value.
 const ALWAYS: [&str; 9] =
     ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
 

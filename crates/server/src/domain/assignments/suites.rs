@@ -3,8 +3,8 @@
 use crate::problem::Problem;
 use serde::Deserialize;
 
-/// The names of these suites. A server whose workers are elsewhere may have no grader to ask; then it takes any plain
-/// name, and the worker's grader says whether it has such a suite.
+/// The names of these suites. A server whose workers are elsewhere may have no grader; then it accepts any plain name,
+/// and the worker's grader reports whether it has such a suite.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     names: Vec<String>,
@@ -31,7 +31,7 @@ struct Entry {
     default: bool,
 }
 
-/// Returns whether a name is one file in a folder, on every system, and looks the same in every message.
+/// Returns whether a name is one file in a folder on every system, and is unambiguous in every message.
 pub fn is_file_name(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
@@ -47,7 +47,7 @@ impl Suites {
         let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
         let mut newest: Vec<(String, String)> = Vec::new();
         for entry in list.suites.iter().filter(|entry| !entry.suite.is_empty()) {
-            // The newest version comes first.
+            // The newest version is listed first.
             if newest.iter().all(|(suite, _)| *suite != entry.suite) {
                 newest.push((entry.suite.clone(), entry.name.clone()));
             }
@@ -56,9 +56,9 @@ impl Suites {
         Ok(Self { names, titles, newest, default: default.unwrap_or_default() })
     }
 
-    /// Returns the name for settings: that of the grader's default where there is none, and with the newest version
-    /// where there is no version, so that later versions of the grader change nothing. As it is where the grader can't
-    /// be asked here, which leaves the choice to it.
+    /// Returns the name for settings. Without a name it is the grader's default; without a version it gets the newest
+    /// one, so that later versions of the grader change nothing. If the grader can't be called here, the name stays,
+    /// and the grader chooses.
     pub(in crate::domain) fn or_default(&self, name: &str) -> String {
         let newest = self.newest.iter().find(|(suite, _)| suite == name);
         match newest {
@@ -70,7 +70,7 @@ impl Suites {
 
     /// Checks that there is such a suite.
     pub(in crate::domain) fn check(&self, name: &str) -> Result<(), Problem> {
-        // The version stands behind an `@`.
+        // The version follows an `@`.
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
         match () {
             () if !is_name => Err(Problem::invalid(format!("suite is {}", self.describe()))),
@@ -79,7 +79,7 @@ impl Suites {
         }
     }
 
-    /// Returns the suites' names and titles; none where the grader can't be asked.
+    /// Returns the suites' names and titles; none if the grader can't be called.
     pub fn listed(&self) -> impl Iterator<Item = (&str, &str)> {
         self.names.iter().zip(&self.titles).map(|(name, title)| (name.as_str(), title.as_str()))
     }

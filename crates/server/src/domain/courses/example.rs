@@ -1,4 +1,4 @@
-//! A course to try the service with: made on a fresh server when the person who starts it asks for it.
+//! A course to try the service with: created on a fresh server on request.
 use crate::domain::{
     App, NewSecret, Settings,
     accounts::identity::{self, Way},
@@ -6,7 +6,7 @@ use crate::domain::{
 };
 use crate::{problem::Problem, values};
 
-/// The course that is made; one of this name is taken for it.
+/// The course that is made; an existing course of this name is taken for it.
 const COURSE: (&str, &str) = ("example", "Example");
 const ASSIGNMENT: (&str, &str) = ("m1", "Milestone one");
 const STUDENT: (&str, &str) = ("student", "A student");

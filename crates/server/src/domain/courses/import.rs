@@ -22,14 +22,14 @@ pub struct MemberLine {
     pub(crate) line: u64,
     pub(crate) name: String,
     pub(crate) login: String,
-    // Where to send the link; not kept.
+    // The address for the link; not kept.
     pub(crate) email: String,
     pub(crate) role: String,
     /// The columns of the table that have something in this line, and of which nothing is kept.
     pub(crate) unused: Vec<String>,
     /// The error in the line; then nothing was done about any.
     pub(crate) error: Option<String>,
-    /// A link that signs in once; nothing where the account was there before.
+    /// A link that signs in once; `None` if the account existed.
     pub(crate) link: Option<String>,
 }
 
@@ -39,7 +39,7 @@ fn column(heading: &str) -> Option<usize> {
     COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
 }
 
-/// Returns the places of the columns, by the headings of the first line; nothing where these are no headings.
+/// Returns the places of the columns, by the headings of the first line; `None` if the line has no headings.
 fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     if words.iter().all(|word| column(word).is_none()) {
         return Ok(None);
@@ -56,7 +56,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     }
 }
 
-/// Reads a table; what is wrong with a line is told with it.
+/// Reads a table; each line comes with its faults.
 fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
     if first.trim_start().starts_with(['{', '[']) {
@@ -87,7 +87,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         }
         let is_beside = |(place, word): &(usize, &String)| !word.is_empty() && !places.contains(&Some(*place));
         let beside = words.iter().enumerate().filter(is_beside);
-        // Nothing is left out in silence: what no heading names is an error.
+        // No column is ignored silently: a column without a known heading is an error.
         let unused: Option<Vec<String>> =
             beside.map(|(place, _)| named.get(place).filter(|name| !name.is_empty()).cloned()).collect();
         let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
@@ -126,17 +126,17 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
 }
 
 impl Staff {
-    /// Makes all members of a table, if nothing is wrong with any line; with `preview` only reads it.
+    /// Makes all members of a table, if no line has a fault; with `preview` only reads it.
     ///
     /// # Errors
-    /// When it is no table, or somebody changed one of its members since the event that was `seen`.
+    /// When it is no table, or one of its members was changed since the event `seen`.
     pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if preview || lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
         }
         let mut transaction = self.begin().await?;
-        // In one order, whatever the table's: two that import at once do not wait for each other.
+        // The order does not depend on the table's, so that two simultaneous imports do not wait for each other.
         let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {

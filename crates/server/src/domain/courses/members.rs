@@ -46,8 +46,8 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Returns those whose login or name has these words, behind the one of this login: a page of them, and whether
-    /// there are more.
+    /// Returns the people whose login or name has these words, after this login: a page of them, and whether there are
+    /// more.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -66,11 +66,11 @@ impl Staff {
         Ok((people, has_more))
     }
 
-    /// Makes somebody a member, or changes what they are; makes the account when there is none, and a link for it that
-    /// signs in once. An account that another course's staff made, who may sign in as it, an administrator adds.
+    /// Makes a person a member, or changes their role. It creates a missing account, with a link that signs in once.
+    /// Only an administrator may add an account that another course's staff made, since that staff can sign in as it.
     ///
     /// # Errors
-    /// When a name is none, or somebody changed the member since the event that was `seen`.
+    /// When a name is not valid, or the member was changed since the event `seen`.
     pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -80,7 +80,7 @@ impl Staff {
         Ok(Link { link })
     }
 
-    /// Returns the number of the course's last event: what somebody who reads the members now has seen.
+    /// Returns the number of the course's last event: a reader of the members now has seen all up to it.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -90,8 +90,8 @@ impl Staff {
         Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
     }
 
-    /// Refuses a change of what somebody else changed since the event that was `seen`, and says who, and what: there is
-    /// a later event of this kind, of an assignment or of none, whose text begins so.
+    /// Rejects a change of what another person changed since the event `seen`, and names the person and the change. It
+    /// looks for a later event of this kind, of an assignment or of none, whose text begins with these words.
     pub(in crate::domain) async fn check_seen(
         &self,
         transaction: &mut Transaction,
@@ -158,7 +158,7 @@ impl Staff {
         }
     }
 
-    /// Checks that somebody of the course's staff is left when this member becomes something else.
+    /// Checks that the course keeps a member of staff when this member gets another role.
     async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
         let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
@@ -168,12 +168,12 @@ impl Staff {
         Ok(())
     }
 
-    /// Returns how the user of a link of this person's comes in.
+    /// Returns the way in which a user of this person's link signs in.
     fn way(&self) -> Way {
         if self.account.is_admin { Way::Own } else { Way::Vouched }
     }
 
-    /// Makes a link that signs somebody in once.
+    /// Makes a link that signs a person in once.
     async fn link(&self, transaction: &mut Transaction, account: i64, way: Way) -> Result<Option<String>, DbError> {
         let secret = identity::new_link(transaction, account, Some(self.account.id), way).await?;
         Ok(Some(self.app.welcome_address(&secret)))
@@ -186,10 +186,10 @@ impl Staff {
         self.note(transaction, "member", None, &format!("{login} is {role}")).await
     }
 
-    /// Takes somebody out of the course; what they handed in stays.
+    /// Takes a person out of the course; what they handed in stays.
     ///
     /// # Errors
-    /// When they are no member, or somebody changed them since the event that was `seen`.
+    /// When the person is no member, or was changed since the event `seen`.
     pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
@@ -201,9 +201,9 @@ impl Staff {
         Ok(transaction.commit().await?)
     }
 
-    /// Returns a new link that signs a student in once. Staff makes it for accounts that are this course's alone: made
-    /// here, in no other course, without a password or a platform of their own. Anybody who could sign in as somebody
-    /// else could do what they may do.
+    /// Returns a new link that signs a student in once. Staff makes it only for accounts that belong to this course
+    /// alone: made here, in no other course, without a password or a platform of their own. A person who signs in as
+    /// another could do all that this other person may do.
     ///
     /// # Errors
     /// When the account is more than that, or no member.

@@ -1,6 +1,6 @@
-//! Removing people, submissions, assignments and courses with all that is kept of them. The audit log says that it was
-//! done, and names nobody. Bytes in the store go when nothing names them any more, see [`retention`](crate::retention);
-//! a job that runs meanwhile finds its lease gone, and ends without effect.
+//! Removes people, submissions, assignments and courses with all their data. The audit log records the removal without
+//! names. Bytes in the store are removed once nothing names them, see [`retention`](crate::retention). A job that runs
+//! meanwhile loses its lease, and ends without effect.
 use crate::domain::{Admin, Staff};
 use crate::{
     db::{Database, DbError, Transaction},
@@ -50,7 +50,7 @@ async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: 
     Ok(ids)
 }
 
-/// Removes what is kept of submissions that a statement finds. Anybody who writes about one of them is waited for.
+/// Removes the data of submissions that a statement finds. It waits for others that write about one of them.
 async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
     let ids = cancel_jobs(transaction, which, value).await?;
     let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
@@ -62,7 +62,7 @@ async fn remove_submissions(transaction: &mut Transaction, which: &'static str, 
     Ok(())
 }
 
-/// Removes submissions batch by batch, until a statement finds no more; the caller removes those that come meanwhile.
+/// Removes submissions batch by batch, until a statement finds no more; the caller removes those that arrive meanwhile.
 async fn remove_in_batches(database: &Database, which: &'static str, value: i64) -> Result<(), DbError> {
     loop {
         let mut transaction = database.begin().await?;
@@ -107,7 +107,7 @@ impl Staff {
         remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
         let mut transaction = self.begin().await?;
         cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
-        // From here on nobody hands in.
+        // From here on no uploads are accepted.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
         remove_submissions(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
         let rest = [
@@ -167,8 +167,8 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// Removes a person: what they handed in, what it came to, their names, and every way in. What they did as staff
-    /// stays, by nobody's name.
+    /// Removes a person: their submissions with the results, their names, and every way to sign in. Their actions as
+    /// staff stay without a name.
     ///
     /// # Errors
     /// When there is no such account, or it is one's own.

@@ -1,4 +1,5 @@
-//! The choices of staff who came from a platform: which course theirs is here, and which assignment a link leads to.
+//! The choices of staff who came from a platform: the course here that belongs to theirs, and the assignment to which a
+//! link leads.
 use crate::domain::{
     Member, Person,
     platforms::launch,
@@ -15,15 +16,15 @@ use crate::{
 /// The choices.
 #[derive(Debug, Clone)]
 pub enum LinkTarget {
-    /// The course, of those that one teaches, or a new one.
+    /// The course: one of the person's, or a new one.
     Course {
         /// The platform.
         platform: String,
         /// The assignment's name there.
         title: String,
-        /// A name for a new one.
+        /// A name for a new course.
         slug: String,
-        /// Those that are there.
+        /// The courses to choose from.
         courses: Vec<Course>,
     },
     /// The assignment.
@@ -32,7 +33,7 @@ pub enum LinkTarget {
         course: Course,
         /// The name of the link there.
         title: Option<String>,
-        /// Those that are there.
+        /// The assignments to choose from.
         assignments: Vec<Assignment>,
     },
 }
@@ -87,10 +88,10 @@ impl Person {
         })
     }
 
-    /// Connects the platform's course with one of those that this person teaches, or with a new one.
+    /// Connects the platform's course with a course of this person, or with a new one.
     ///
     /// # Errors
-    /// When there is no such course, or one of the new one's name.
+    /// When there is no such course, or the new one's name is taken.
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -128,7 +129,7 @@ impl Person {
         Ok(transaction.commit().await?)
     }
 
-    /// Makes the link lead to an assignment; of a link that the platform asks for, the answer that it waits for.
+    /// Makes the link lead to an assignment; if the platform requested the link, returns the answer for which it waits.
     ///
     /// # Errors
     /// When this person does not teach the course, or it has no such assignment.

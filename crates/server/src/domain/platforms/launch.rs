@@ -1,5 +1,5 @@
-//! Coming from a learning platform: the platform is asked who it is (SEC 5.1.1), answers once, and they are signed in
-//! as who they are here, in the course that belongs to theirs there.
+//! Arrivals from a learning platform: the service asks the platform who the person is (SEC 5.1.1), accepts one answer,
+//! and signs the person in with their account here, in the course that belongs to the platform's.
 use crate::domain::{
     App, NewSecret, Visitor,
     accounts::identity::{self, Way},
@@ -22,24 +22,24 @@ use url::Url;
 /// The longest time that a sign-in may take, in milliseconds.
 const LOGIN: i64 = 10 * 60 * 1000;
 
-/// How long staff may take to choose.
+/// The time in which staff must choose.
 const CHOICE: i64 = 3600 * 1000;
 
 /// Sign-ins from one platform that an address may begin in a minute: a lecture hall may be one address.
 const LOGINS: u32 = 3000;
 
-/// The words of a platform about somebody who wants to come (LTI 4.1, SEC 5.1.1.1).
+/// The message of a platform about a person who wants to sign in (LTI 4.1, SEC 5.1.1.1).
 #[derive(Debug, Clone, Deserialize)]
 pub struct LoginRequest {
     /// The platform's issuer.
     pub iss: String,
     /// Sent back as they are.
     pub login_hint: String,
-    /// Where they want to go.
+    /// The page to which the person wants to go.
     pub target_link_uri: Option<String>,
     /// Sent back as they are, about the message.
     pub lti_message_hint: Option<String>,
-    /// The platform's name for this service, where it says so.
+    /// The platform's name for this service, if it gives one.
     pub client_id: Option<String>,
     /// The deployment.
     pub lti_deployment_id: Option<String>,
@@ -48,13 +48,13 @@ pub struct LoginRequest {
 /// The next step of a browser.
 #[derive(Debug, Clone)]
 pub struct LoginAnswer {
-    /// Where to ask.
+    /// The address to which the browser is sent.
     pub address: String,
-    /// The word that the browser shows when it comes back.
+    /// The secret that the browser must return.
     pub browser: String,
 }
 
-/// Where somebody is to go, signed in.
+/// The page to which a signed-in person is sent.
 #[derive(Debug, Clone)]
 pub struct LaunchTarget {
     /// The person's session.
@@ -86,10 +86,10 @@ impl App {
 }
 
 impl Visitor {
-    /// Returns the platform that somebody says they come from.
+    /// Returns the platform from which a person claims to come.
     ///
     /// # Errors
-    /// When nobody registered it.
+    /// When no platform of this name is registered.
     pub async fn platform(&self, request: &LoginRequest) -> Result<Platform, Problem> {
         self.app.check_launchable()?;
         let mut transaction = self.app.0.database.read().await?;
@@ -104,8 +104,8 @@ impl Visitor {
         }
     }
 
-    /// Begins a sign-in, and says where to ask for it. What is to be known again is signed, and stands nowhere: anybody
-    /// may begin as many as they like.
+    /// Begins a sign-in, and returns the address to which the browser is sent. The data for the answer are signed and
+    /// not stored: any number of sign-ins may begin.
     ///
     /// # Errors
     /// When there are too many, or the database does not answer.
@@ -145,10 +145,10 @@ impl Visitor {
         Ok(LoginAnswer { address: address.into(), browser })
     }
 
-    /// Signs in whom a platform tells of, in answer to a sign-in that this browser began.
+    /// Signs in the person whom a platform names, in answer to a sign-in that this browser began.
     ///
     /// # Errors
-    /// When the answer is none of ours, none of the platform's, or nobody may come by it.
+    /// When the answer does not belong to such a sign-in or platform, or this person may not sign in by it.
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
         let key = self.app.signing_key().await?;
         let (login, platform) = self.login(&key, state).await?;
@@ -169,7 +169,7 @@ impl Visitor {
         Ok(launched)
     }
 
-    /// Returns the sign-in that this browser began, and the platform that was asked.
+    /// Returns the sign-in that this browser began, and its platform.
     async fn login(&self, key: &hmac::Key, state: &str) -> Result<(PendingLogin, Platform), Problem> {
         let login = PendingLogin::read(key, state).ok_or_else(unknown_login)?;
         let mut transaction = self.app.0.database.read().await?;
@@ -181,7 +181,7 @@ impl Visitor {
         let Some(browser) = &self.secrets.browser else {
             return Err(Problem::refused_launch("your browser did not send the cookie of this sign-in"));
         };
-        // Begun in another browser: somebody wants to sign this one in as somebody else.
+        // The sign-in began in another browser: its owner wants to sign this browser in as somebody else.
         if login.browser != identity::digest(browser) {
             return Err(Problem::refused_launch("this sign-in was begun in another browser"));
         }
@@ -193,7 +193,7 @@ fn unknown_login() -> Problem {
     Problem::refused_launch("this sign-in is unknown, used or too old")
 }
 
-/// A sign-in that a platform was asked for: answered once, by the same browser, and soon.
+/// A sign-in that a platform must confirm: once, in the same browser, and soon.
 struct PendingLogin {
     platform: i64,
     expires_at: i64,
@@ -202,7 +202,7 @@ struct PendingLogin {
 }
 
 impl PendingLogin {
-    /// Returns the value as the platform sends it back, in words that nobody else can make.
+    /// Returns the value as the platform sends it back, signed against forgery.
     fn signed(&self, key: &hmac::Key) -> String {
         let Self { platform, expires_at, browser } = self;
         let words = format!("{platform}.{expires_at}.{browser}.{}", random_hex());
@@ -224,7 +224,7 @@ fn nonce(key: &hmac::Key, state: &str) -> String {
 }
 
 impl App {
-    /// Returns the key by which the service knows again what it signed: the same for all servers of a database.
+    /// Returns the key by which the service recognizes what it signed: the same for all servers of a database.
     async fn signing_key(&self) -> Result<hmac::Key, Problem> {
         let found = self.0.signing_key.get_or_try_init(async || {
             let mut transaction = self.0.database.begin().await?;
@@ -250,7 +250,7 @@ pub(in crate::domain) struct Place {
 
 from_row! { Place { id, course, slug, title } }
 
-/// Returns the course here from which somebody comes there.
+/// Returns the course here that belongs to a person's course there.
 pub(in crate::domain) async fn place(
     transaction: &mut Transaction,
     platform: i64,
@@ -262,7 +262,7 @@ pub(in crate::domain) async fn place(
     transaction.find(statement, values![platform, &arrival.deployment, &arrival.context.id]).await
 }
 
-/// Finds or makes the account, brings its role up to date, and says where it is to go.
+/// Finds or makes the account, updates its role, and returns the page to which it is sent.
 async fn arrive(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -336,7 +336,7 @@ pub(in crate::domain) async fn make_link(
     transaction.one(statement, values![place, resource, assignment]).await?.int("id")
 }
 
-/// Notes where scores of a link go, as the platform says today. A column that this service made stays.
+/// Notes the columns for scores of a link that the platform names today. A column that this service made stays.
 pub(in crate::domain) async fn columns(
     transaction: &mut Transaction,
     link: i64,
@@ -362,7 +362,7 @@ async fn choose(
     let statement =
         "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
     transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE]).await?;
-    // The choice may make a student's account that of staff.
+    // The choice could make a student's account staff.
     if !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     }
@@ -374,15 +374,15 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
     ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is closed"))?;
-    // Otherwise anybody who runs a platform could do everything here.
+    // Otherwise the owner of any platform could do everything here.
     if row.flag("is_admin")? {
         return Err(Problem::refused_launch("you are an administrator of this server: sign in on its own pages"));
     }
     Ok(account)
 }
 
-/// Finds the account of somebody, made when they are new; their name as the platform has it. Never one that is there
-/// already under the same name or address: these are words that people choose for themselves.
+/// Finds the account of a person, or makes it; its name is the platform's. It never takes an existing account of the
+/// same name or address: people choose these for themselves.
 pub(in crate::domain) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -425,7 +425,7 @@ fn tidy(name: &str) -> String {
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()
 }
 
-/// Makes a login from whatever somebody is called.
+/// Makes a login from a person's name, whatever it holds.
 fn login_of(word: &str) -> String {
     let plain = |c: char| match c.to_ascii_lowercase() {
         c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
@@ -437,7 +437,7 @@ fn login_of(word: &str) -> String {
     if login.is_empty() { "user".to_owned() } else { login.to_owned() }
 }
 
-/// Makes somebody a member by a platform's word, or changes what they are; what staff said here stays.
+/// Makes a person a member on a platform's word, or changes their role; roles that staff set here stay.
 pub(in crate::domain) async fn enrol(
     transaction: &mut Transaction,
     platform: i64,

@@ -18,17 +18,17 @@ use utoipa::ToSchema;
 /// The result of reading a roster.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RosterRead {
-    /// Members that the platforms told of.
+    /// The number of members that the platforms report.
     pub members: usize,
     /// Members who left.
     pub left: usize,
-    /// The logins of those who were no members before.
+    /// The logins of people who were no members before.
     pub comes: Vec<String>,
-    /// The logins of those who left.
+    /// The logins of people who left.
     pub goes: Vec<String>,
 }
 
-/// The use that is to be made of a roster.
+/// The use of a roster.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RosterWish {
     /// Nothing: who would come and go.
@@ -39,19 +39,19 @@ pub enum RosterWish {
     Confirmed,
 }
 
-/// A score that a platform was told of somebody's work.
+/// A score of a person's work that was sent to a platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ScoreInfo {
     /// The platform.
     pub platform: String,
     /// The student.
     pub login: String,
-    /// The score that it is to know.
+    /// The score for the platform.
     #[schema(value_type = Object)]
     pub score: Value,
     /// The time when that became so, in milliseconds since 1970.
     pub stamp: i64,
-    /// When it took it; nothing while it has not.
+    /// The time when the platform accepted it; `None` until then.
     pub sent_at: Option<i64>,
     /// The reason why it has not.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -93,7 +93,7 @@ impl Admin {
             let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
             return Err(Problem::conflict(detail, "change that one"));
         }
-        // Accounts belong to an issuer's people: they must not become those of another.
+        // Accounts belong to the people of one issuer: they must not become another issuer's.
         let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
         if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
             return Err(Problem::conflict("another issuer is registered under this name", "give it another name"));
@@ -110,10 +110,10 @@ impl Admin {
         Ok(Platform::from_row(&row)?)
     }
 
-    /// Shuts a platform: nobody comes from it any more, and nothing goes there. Accounts and courses stay.
+    /// Closes a platform: nobody arrives from it any more, and no scores are sent. Accounts and courses stay.
     ///
     /// # Errors
-    /// When there is none of this name.
+    /// When there is no platform of this name.
     pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
@@ -123,7 +123,7 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// Makes a new key, which signs from an hour on; the one before it is told of until the next.
+    /// Makes a new key, which signs from an hour on; the key before it is published until the next one.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -136,13 +136,12 @@ impl Admin {
 }
 
 impl Staff {
-    /// Reads who is in the course from the platforms that it is connected with. Who is not told of any more leaves,
-    /// unless staff made them members; what they handed in stays. The person who asks stays, and a list of nobody
-    /// changes nothing.
+    /// Reads the members of the course from its platforms. Members that are no longer listed leave, unless staff made
+    /// them members; what they handed in stays. The person who requests it stays, and an empty list changes nothing.
     ///
     /// # Errors
-    /// When no platform tells, one does not answer, or more than a third would leave without a confirmation; then
-    /// nothing of what it tells changes.
+    /// When no platform gives a list, one does not answer, or more than a third would leave without a confirmation;
+    /// then nothing changes.
     pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
         let app = &self.app;
         let mut transaction = app.0.database.read().await?;
@@ -202,7 +201,7 @@ impl Staff {
             }
             enrol(&mut transaction, platform.id, place, course, account, role).await?;
         }
-        // An answer of nobody is a filter, or a fault.
+        // An empty answer is a filter, or a fault.
         if present.is_empty() {
             return Ok(RosterRead::default());
         }
@@ -262,7 +261,7 @@ impl Staff {
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Has all scores of an assignment sent once more, also those that platforms took; how many these are.
+    /// Sends all scores of an assignment once more, also those that platforms have, and returns their number.
     ///
     /// # Errors
     /// When there is no such assignment.

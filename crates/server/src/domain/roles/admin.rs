@@ -45,7 +45,7 @@ impl Admin {
     /// Makes a course.
     ///
     /// # Errors
-    /// When there is one of this name.
+    /// When its name is taken.
     pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         make_course(&mut transaction, (slug, title)).await?;
@@ -54,8 +54,8 @@ impl Admin {
         Ok(Course { slug: slug.to_owned(), title: title.to_owned() })
     }
 
-    /// Accounts whose login or name has these words, behind the one of this login: a page of them, and whether there
-    /// are more.
+    /// Returns accounts whose login or name has these words, after this login: a page of them, and whether there are
+    /// more.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -109,7 +109,7 @@ impl Admin {
         Ok(Link { link: Some(self.app.welcome_address(&link)) })
     }
 
-    /// Shuts an account: it can't sign in any more, and what it handed in stays.
+    /// Closes an account: it can't sign in any more, and what it handed in stays.
     ///
     /// # Errors
     /// When there is none, or it is one's own.
@@ -206,7 +206,7 @@ impl App {
         Ok(Some(link))
     }
 
-    /// Returns a new link for an administrator, for anybody who can run programs on the server: the way back in.
+    /// Returns a new link for an administrator, who can run programs on the server and has lost the old one.
     ///
     /// # Errors
     /// When there is no such administrator.

@@ -51,7 +51,7 @@ impl Member {
         assignment
     }
 
-    /// Returns one of the member's submissions.
+    /// Returns an assignment of the member's course.
     ///
     /// # Errors
     /// When there is none.
@@ -88,7 +88,7 @@ impl Member {
             if !self.is_staff {
                 submission.fault = None;
             }
-            // Nobody has looked at what is hidden in it yet, which takes its files.
+            // Its hidden parts were not separated yet; that needs its files.
             if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
                 *submission = self.find_submission(&mut transaction, submission.id).await?;
                 submission.grade.iter_mut().for_each(|grade| grade.outcome.files.clear());
@@ -111,8 +111,8 @@ impl Member {
         Ok(view::submissions_of(&mut transaction, assignment.id, submission.account).await?)
     }
 
-    /// Leaves out what the reader does not see: what is staff's, before it is published what the suite hides, and pages
-    /// that tell of another part of the grade than the points that the reader sees.
+    /// Leaves out what the reader does not see: parts for staff, groups that the suite hides until they are published,
+    /// and pages about another part of the grade than the points that the reader sees.
     async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
         let Some(grade) = submission.grade.as_mut() else { return Ok(()) };
         let files = &mut grade.outcome.files;
@@ -124,7 +124,7 @@ impl Member {
             }
             return Ok(());
         }
-        // Of what older versions graded nobody has looked yet.
+        // Hidden parts of what older versions graded were not separated yet.
         let kept = match grade.outcome.shown.take() {
             Some(kept) => kept,
             None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
@@ -163,10 +163,10 @@ impl Member {
         self.find_submission(&mut transaction, id).await
     }
 
-    /// Returns how its grade came to be.
+    /// Returns how its grade came to count.
     ///
     /// # Errors
-    /// When they may see none of this number.
+    /// When the person may see no submission of this number.
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;

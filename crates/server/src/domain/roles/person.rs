@@ -13,7 +13,7 @@ use serde::Serialize;
 use std::net::IpAddr;
 use utoipa::ToSchema;
 
-/// A course, and what somebody is in it.
+/// A course, and the person's role in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct CourseOf {
     /// The course.
@@ -26,25 +26,26 @@ pub struct CourseOf {
 /// Somebody who is signed in.
 pub struct Person {
     pub(crate) account: Account,
-    /// The browser's session; nothing where a token asks.
+    /// The browser's session; `None` for a token.
     pub(in crate::domain) session: Option<SessionState>,
     pub(in crate::domain) address: Option<IpAddr>,
     pub(crate) app: App,
 }
 
 impl Person {
-    /// Returns whether they came in by a token, or by a session that one began.
+    /// Returns whether the person signed in by a token, or by a session that a token began.
     pub fn is_by_token(&self) -> bool {
         self.session.as_ref().is_none_or(|session| session.is_by_token)
     }
 
-    /// Returns the session, where it is the person at a browser: what a token can do, ends with the token.
+    /// Returns the session if the person is at a browser: a right of a token ends with the token.
     pub(in crate::domain) fn at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, and neither can a session that it began"))
     }
 
-    /// Returns the session if they signed in lately: anybody who finds an open browser makes no further ways in.
+    /// Returns the session if the person signed in lately: a finder of an open browser creates no further ways to sign
+    /// in.
     pub(in crate::domain) fn lately_at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.at_browser()?;
         match session.is_recent {

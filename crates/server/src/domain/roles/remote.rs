@@ -1,5 +1,5 @@
-//! A worker on another machine. It runs hostile programs, so it may be theirs one day: it can claim jobs, read what
-//! belongs to those that it holds, and say what became of them. It sees no course, no student and no other submission.
+//! A worker on another machine. It runs hostile programs, so a submission may control it one day: it can claim jobs,
+//! read their files, and report their results. It sees no course, no student and no other submission.
 use crate::domain::App;
 use crate::{
     problem::{Problem, ensure},
@@ -71,7 +71,7 @@ impl Remote {
         Ok(self.source().claim().await?)
     }
 
-    /// Says that it is alive, with this many slots, or why it can't grade, and of which version it is.
+    /// Reports that the worker is alive, its slots or why it can't grade, and its version.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -92,7 +92,7 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
     }
 
-    /// Gives a job back.
+    /// Returns a job to the queue.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -100,7 +100,7 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
     }
 
-    /// Says that a try failed.
+    /// Reports that a try failed.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -193,7 +193,7 @@ impl Remote {
         self.held(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
-        // A request that takes the job away meanwhile waits for this one, or this one finds the job taken.
+        // A request that takes the job away meanwhile waits for this one, or this one finds that the job was taken.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
         let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;

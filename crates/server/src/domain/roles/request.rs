@@ -1,4 +1,4 @@
-//! The asker of a request, told from the secrets that it shows.
+//! The role of a request's sender, by the secrets that the request shows.
 use crate::domain::{
     Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
     accounts::identity::{self, SessionState},
@@ -40,7 +40,7 @@ impl App {
         Ok((account, seen))
     }
 
-    /// Returns a visitor, who may be anybody.
+    /// Returns a visitor, who may be anyone.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
         Visitor { app: self.clone(), secrets }
     }
@@ -48,16 +48,16 @@ impl App {
     /// Returns the person who is signed in.
     ///
     /// # Errors
-    /// When nobody is, or they ask too often.
+    /// When the request is not signed in, or there are too many.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
         let (account, session) = self.account(secrets).await?;
         Ok(Person { account, session, address: secrets.address, app: self.clone() })
     }
 
-    /// Returns a worker by its token; what it is called is its own to say.
+    /// Returns a worker by its token; the worker chooses its own name.
     ///
     /// # Errors
-    /// When the token is none of a worker's, or not any more.
+    /// When the token is no worker's, or no longer valid.
     pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
@@ -110,10 +110,10 @@ impl Person {
 }
 
 impl Member {
-    /// Returns the person as one of the course's staff.
+    /// Returns the person as staff of the course.
     ///
     /// # Errors
-    /// When they are not.
+    /// When the person is not.
     pub fn staff(self) -> Result<Staff, Problem> {
         if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("this is for the course's staff")) }
     }

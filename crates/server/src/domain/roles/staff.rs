@@ -12,7 +12,7 @@ use crate::{
 };
 use std::{ops::Deref, path::Path};
 
-/// Somebody of a course's staff.
+/// A member of a course's staff.
 pub struct Staff(pub(in crate::domain) Member);
 
 /// A change of an assignment; parts that are not named stay as they are.
@@ -22,7 +22,7 @@ pub struct AssignmentChange<'a> {
     pub title: Option<&'a str>,
     /// Whether students see it.
     pub visible: Option<bool>,
-    /// The revision that the change is of: it is refused when there is a later one.
+    /// The revision that was changed: the change is rejected if there is a later one.
     pub revision: Option<i64>,
     /// A suite that was just uploaded.
     pub suite: Option<&'a NewSuite>,
@@ -44,15 +44,15 @@ pub struct NewSuite {
 pub struct UploadedSuite {
     /// The digest of the suite's archive.
     pub digest: String,
-    /// The suite's name; nothing where an older version received it.
+    /// The suite's name; `None` if an older version received it.
     pub name: String,
-    /// When it was uploaded last.
+    /// The time of the last upload.
     pub uploaded_at: Option<i64>,
 }
 
 from_row! { UploadedSuite { digest, name, uploaded_at } }
 
-/// Refuses a change of what somebody else changed meanwhile, and says who, and what.
+/// Rejects a change of what another person changed meanwhile, and names the person and the change.
 async fn check_revision(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -89,11 +89,11 @@ impl Staff {
         view::note(transaction, &self.entry(kind, assignment, text)).await
     }
 
-    /// Makes an assignment, or changes it. Groups that another suite may hide were not meant when those of the last one
-    /// were published: they are withheld.
+    /// Makes an assignment, or changes it. Publishing the groups of the last suite does not include groups that another
+    /// suite hides: they are withheld.
     ///
     /// # Errors
-    /// When something in it makes no sense, or somebody changed it since `revision`.
+    /// When a part of it makes no sense, or it was changed since `revision`.
     pub async fn set_assignment(
         &self,
         slug: &str,
@@ -132,7 +132,7 @@ impl Staff {
         let withholds = was_published && hides && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.text(), withholds];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
-        // Late submissions may be worth something else now, and platforms hear of what is shown.
+        // Late submissions may have another worth now, and platforms get what is shown.
         if withholds || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
@@ -171,7 +171,7 @@ impl Staff {
         )
     }
 
-    /// Shows students what the suite hides, or withholds it again; platforms are told what is shown.
+    /// Shows students what the suite hides, or withholds it again; platforms get what is shown.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -192,7 +192,7 @@ impl Staff {
     /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
     ///
     /// # Errors
-    /// When there is no such assignment, somebody changed it since `revision`, or the store fails.
+    /// When there is no such assignment, it was changed since `revision`, or the store fails.
     pub async fn set_suite(
         &self,
         slug: &str,
@@ -224,15 +224,15 @@ impl Staff {
     /// When the database does not answer.
     pub async fn hides(&self, assignment: &Assignment) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        // Of what older versions graded nobody may have looked yet.
+        // Hidden parts of what older versions graded may not be separated yet.
         let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
             WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
             LIMIT 1";
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
     }
 
-    /// Submissions to an assignment of the course behind the one of this number, oldest first: a page of them, none
-    /// behind the last.
+    /// Returns submissions to an assignment of the course after this number, oldest first: a page of them, none after
+    /// the last.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -241,7 +241,7 @@ impl Staff {
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
-    /// Returns the events of the course before the one of this number, latest first; with `None` up to now.
+    /// Returns the events of the course before this number, latest first; with `None` up to now.
     ///
     /// # Errors
     /// When the database does not answer.

@@ -14,9 +14,9 @@ pub struct Secrets {
     pub bearer: Option<String>,
     /// The secret of a browser's session.
     pub session: Option<String>,
-    /// The word of a browser that comes from a learning platform.
+    /// The secret of a browser that comes from a learning platform.
     pub browser: Option<String>,
-    /// The place where the request comes from.
+    /// The address from which the request comes.
     pub address: Option<IpAddr>,
 }
 
@@ -26,7 +26,7 @@ pub struct Visitor {
     pub(in crate::domain) secrets: Secrets,
 }
 
-/// Sign-ins by link or token from one address in a minute: a lecture hall may be one.
+/// Sign-ins by link or token from one address in a minute: a lecture hall may share an address.
 const SIGN_INS: u32 = 600;
 
 impl Visitor {
@@ -52,7 +52,7 @@ impl Visitor {
         Ok(session)
     }
 
-    /// Returns whether a link would sign somebody in.
+    /// Returns whether a link can still be used to sign in.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -102,8 +102,8 @@ impl Visitor {
         self.app.0.storage.prove().await
     }
 
-    /// Returns numbers for a monitor, in Prometheus' text format. Without a database that answers they are those of the
-    /// process.
+    /// Returns numbers for a monitor, in Prometheus' text format. If the database does not answer they are the
+    /// process's alone.
     ///
     /// # Errors
     /// When they can't be written as text.

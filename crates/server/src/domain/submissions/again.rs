@@ -1,4 +1,4 @@
-//! Grading once more what the grader failed on.
+//! Grades again what the grader failed on.
 use crate::domain::{
     Staff,
     submissions::bulk::enqueue_replaced,
@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 /// The submissions that are graded again.
 #[derive(Serialize, ToSchema)]
 pub struct RegradeOrder {
-    /// How many submissions.
+    /// The number of submissions.
     pub jobs: i64,
 }
 

@@ -1,4 +1,4 @@
-//! Jobs for many submissions at once, made by the database.
+//! Jobs for many submissions in one statement of the database.
 use crate::domain::view::Assignment;
 use crate::{
     db::{Transaction, Value},
@@ -7,7 +7,7 @@ use crate::{
 };
 use std::ops::RangeInclusive;
 
-/// The payload of a job for a row of `submission`, as [`pieces`] says.
+/// The payload of a job for a row of `submission`, as [`pieces`] describes.
 macro_rules! payload {
     () => {
         "CAST(? AS TEXT) || submission.form || CAST(? AS TEXT) || {quoted}(submission.file_name) || CAST(? AS TEXT)
@@ -32,7 +32,7 @@ pub(in crate::domain) fn pieces(assignment: &Assignment) -> Result<[String; 5], 
     ])
 }
 
-/// Enqueues the submissions to an assignment, of these numbers, whose jobs are replaced, because somebody asks for it.
+/// Enqueues the submissions to an assignment, of these numbers, on request; their jobs are replaced.
 pub(in crate::domain) async fn enqueue_replaced(
     transaction: &mut Transaction,
     assignment: &Assignment,

@@ -1,4 +1,4 @@
-//! The work of regrades: one statement does it for all submissions, so that each step is taken at once or not at all.
+//! The work of regrades: one statement does it for all submissions, so that each step is done completely or not at all.
 use crate::domain::{
     submissions::bulk::{payload, pieces},
     view::Assignment,
@@ -19,7 +19,7 @@ pub(in crate::domain) async fn enqueue_missing(
     campaign: i64,
     assignment: &Assignment,
 ) -> Result<u64, Problem> {
-    // None of them is removed before this transaction ends.
+    // No submission is removed before this transaction ends.
     let statement = "SELECT count(*) AS n FROM
         (SELECT id FROM submission WHERE assignment = ? ORDER BY id {for update}) AS held";
     transaction.one(statement, values![assignment.id]).await?;
@@ -28,7 +28,7 @@ pub(in crate::domain) async fn enqueue_missing(
     let mut values: Vec<Value> = vec![campaign.into(), turn.key().into()];
     values.extend(pieces(assignment)?.into_iter().map(Value::from));
     values.extend([from, turn.spacing_millis(), assignment.id, campaign].map(Value::from));
-    // The plus keeps SQLite from looking through all jobs of the regrade for each submission.
+    // The plus keeps SQLite from searching all jobs of the regrade for each submission.
     let statement = concat!(
         "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
          SELECT 'grading', submission.id, CAST(? AS {int}), CAST(? AS TEXT), ",
@@ -40,7 +40,7 @@ pub(in crate::domain) async fn enqueue_missing(
     Ok(transaction.execute(statement, &values).await?)
 }
 
-/// Makes a regrade's results count, by the word of somebody, for a reason that students read. Where the grader failed,
+/// Makes a regrade's results count, on a person's request, for a reason that students read. Where the grader failed,
 /// the old grade stays.
 pub(in crate::domain) async fn apply(
     transaction: &mut Transaction,
@@ -70,7 +70,7 @@ pub(in crate::domain) async fn apply(
     score::note_regrade(transaction, campaign).await
 }
 
-/// Takes what is left of a regrade out of the queue.
+/// Takes the rest of a regrade out of the queue.
 pub(in crate::domain) async fn cancel(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
            ORDER BY id {for update})

@@ -1,4 +1,4 @@
-//! The texts that are kept of results beside their grades, and the scenes that an attempt has changed.
+//! The texts that are kept with results next to their grades, and the scenes that an attempt has changed.
 use crate::domain::{Member, view::Submission};
 use crate::{
     db::{DbError, Row},
@@ -37,18 +37,18 @@ fn read(text: &str) -> FailedScenes {
     lines.map(|(code, scene)| (scene.to_owned(), code.to_owned())).collect()
 }
 
-/// The texts that are kept of a result beside its grade.
+/// The texts that are kept with a result next to its grade.
 #[derive(Debug, Default)]
 pub struct KeptResult {
     /// The scenes that it does not accept.
     pub failed: FailedScenes,
-    /// Points of groups and likely mistakes; nothing where an older version graded.
+    /// Points of groups and likely mistakes; empty if an older version graded.
     pub parts: GradeParts,
 }
 
 impl Member {
-    /// Returns what is kept of results of the course, by their numbers; of results of older versions nothing. It tells
-    /// of hidden groups, too: students may ask about what is published, or hides nothing.
+    /// Returns the kept texts of results of the course, by their numbers; none for results of older versions. They
+    /// describe hidden groups, too: students may read them if the groups are published, or none is hidden.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -70,7 +70,7 @@ impl Member {
     }
 
     /// Returns the changes that attempts of one person made since the graded one before each, by their numbers on this
-    /// server. They come newest first. Of attempts with groups that are withheld nothing is told.
+    /// server. The newest comes first. Attempts with withheld groups are left out.
     ///
     /// # Errors
     /// When the database does not answer.

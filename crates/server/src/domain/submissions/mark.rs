@@ -22,13 +22,13 @@ pub struct StudentHistory {
     pub login: String,
     /// The student's name.
     pub name: String,
-    /// All that they handed in, newest first.
+    /// All submissions of the student, newest first.
     pub submissions: Vec<Submission>,
     /// Until when they may hand in, where that is another moment than for the others.
     pub extended_to: Option<i64>,
 }
 
-/// A request of a student's that nobody has answered.
+/// An unanswered request of a student.
 #[derive(Debug, Clone)]
 pub struct Request {
     /// The submission.
@@ -39,14 +39,14 @@ pub struct Request {
     pub text: String,
 }
 
-/// How an assignment stands, for the table of its course.
+/// The state of an assignment, for the table of its course.
 #[derive(Debug, Clone)]
 pub struct Overview {
     /// Students who handed something in.
     pub students: i64,
     /// The number of their submissions.
     pub submissions: i64,
-    /// Requests of students that nobody has answered.
+    /// The number of unanswered requests of students.
     pub requests: i64,
 }
 
@@ -67,11 +67,10 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
 }
 
 impl Staff {
-    /// Gives a submission other points than the grader, or the grader's again, and says why. That answers a request.
+    /// Gives a submission other points than the grader, or the grader's again, with a reason. That answers a request.
     ///
     /// # Errors
-    /// When there is no such submission, these are no points, or somebody marked it since the mark of the moment that
-    /// was `seen`.
+    /// When there is no such submission, these are no points, or it was marked since the mark of the moment `seen`.
     pub async fn mark(
         &self,
         id: i64,
@@ -129,7 +128,7 @@ impl Staff {
         self.submission(id).await
     }
 
-    /// Returns the requests of students about an assignment that nobody has answered, oldest first.
+    /// Returns the unanswered requests of students about an assignment, oldest first.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -171,10 +170,10 @@ impl Staff {
         row.ok_or_else(|| Problem::not_found("member"))
     }
 
-    /// Lets a student hand in until another moment than the others, or until the same again.
+    /// Gives a student another due date than the others, or the same again.
     ///
     /// # Errors
-    /// When there is no such student, or somebody changed it since the event that was `seen`.
+    /// When there is no such student, or the date was changed since the event `seen`.
     pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
         if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
@@ -206,10 +205,10 @@ impl Staff {
 }
 
 impl Member {
-    /// Asks staff to look at one's own submission again.
+    /// Requests that staff reviews one's own submission.
     ///
     /// # Errors
-    /// When it is not one's own, or nothing is asked.
+    /// When it is not one's own, or the request is empty.
     pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
         check_words("a request", text, 1)?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -229,7 +228,7 @@ impl Member {
         Ok(transaction.commit().await?)
     }
 
-    /// Returns how an assignment stands, for staff.
+    /// Returns the state of an assignment, for staff.
     ///
     /// # Errors
     /// When the database does not answer.

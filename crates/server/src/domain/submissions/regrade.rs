@@ -1,4 +1,4 @@
-//! A regrade: new results beside the old ones, at low priority, until somebody of the staff applies or discards them.
+//! A regrade: new results next to the old ones, at low priority, until a member of staff applies or discards them.
 //! Until then no grade changes.
 use crate::domain::{Settings, Staff, submissions::campaign, view::Assignment};
 use crate::{
@@ -10,14 +10,14 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// Changes that are told at one time, at most.
+/// The greatest number of changes in one answer.
 const CHANGES: i64 = 1000;
 
 /// The place where a regrade is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum RegradeState {
-    /// Nobody has decided yet.
+    /// No decision was made yet.
     Open,
     /// The regrade's results count.
     Applied,
@@ -25,7 +25,7 @@ pub enum RegradeState {
     Discarded,
 }
 
-/// A regrade and what it would change.
+/// A regrade and its changes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Regrade {
     /// The regrade's number.
@@ -38,17 +38,17 @@ pub struct Regrade {
     pub settings: Settings,
     /// The one who began it.
     pub by: String,
-    /// When, in milliseconds since 1970.
+    /// The time of its creation, in milliseconds since 1970.
     pub created_at: i64,
     /// The number of submissions that it grades.
     pub submissions: usize,
-    /// How many of them are still to be graded.
+    /// The number of submissions that are still to be graded.
     pub left: usize,
-    /// How many the grader failed on: their grades stay.
+    /// The number of submissions on which the grader failed: their grades stay.
     pub failed: usize,
-    /// How many grades change.
+    /// The number of grades that change.
     pub changed: usize,
-    /// The changes, by submission: as many as were asked for.
+    /// The changes, by submission: as many as were requested.
     pub changes: Vec<Change>,
     /// The submission after which there are more changes.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -78,7 +78,7 @@ pub struct Change {
     pub why: Vec<String>,
 }
 
-/// Regrades without their changes; what follows says which.
+/// Regrades without their changes; the rest of the statement selects them.
 macro_rules! regrades {
     ($which:literal) => {
         concat!(
@@ -127,10 +127,10 @@ impl Staff {
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
-    /// Returns a regrade and what it would change, or did, for submissions after one.
+    /// Returns a regrade and its changes, for submissions after a number.
     ///
     /// # Errors
-    /// When there is none of this number.
+    /// When there is no regrade of this number.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
@@ -140,7 +140,7 @@ impl Staff {
     /// the old grade stays.
     ///
     /// # Errors
-    /// When it is not finished; submissions that came in meanwhile are graded first, too.
+    /// When it is not finished: submissions that arrived meanwhile are graded first, too.
     pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -171,10 +171,10 @@ impl Staff {
         self.show_regrade(slug, id, None).await
     }
 
-    /// Gives a regrade up: its waiting jobs are cancelled, and nothing changes.
+    /// Discards a regrade: its waiting jobs are canceled, and nothing changes.
     ///
     /// # Errors
-    /// When there is none, or it was decided on.
+    /// When there is none, or it was applied or discarded.
     pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -184,7 +184,7 @@ impl Staff {
         self.show_regrade(slug, id, None).await
     }
 
-    /// Locks a regrade that nobody has decided on; its settings and its reason.
+    /// Locks an open regrade, and returns its settings and its reason.
     async fn lock_open(
         &self,
         transaction: &mut Transaction,
@@ -200,7 +200,7 @@ impl Staff {
         }
     }
 
-    /// Writes what was decided on a regrade.
+    /// Writes the decision on a regrade.
     async fn decide(
         &self,
         mut transaction: Transaction,

@@ -1,5 +1,5 @@
-//! How a class stands: which submission of each student counts. The database puts each student's attempts into one row,
-//! and only submissions that are shown are read whole. Many who ask at one time share one answer.
+//! The standing of a class: the submission of each student that counts. The database puts each student's attempts into
+//! one row, and only submissions that are shown are read whole. Simultaneous requests share one answer.
 use crate::domain::{
     Staff,
     view::{self, Assignment, Submission},
@@ -18,29 +18,29 @@ use std::{
 };
 use utoipa::ToSchema;
 
-/// How a student stands in an assignment.
+/// The standing of a student in an assignment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Standing {
     /// The name of their account.
     pub login: String,
     /// The student's name.
     pub name: String,
-    /// How often they handed in.
+    /// The number of the student's submissions.
     pub submissions: usize,
-    /// The submission that counts: the one with the most points, the later one of equals; the last one while none has
+    /// The submission that counts: the one with the most points, of equal ones the later; the last one while none has
     /// points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub counts: Option<Submission>,
 }
 
-/// A student's standing in short: what a class's figures are made of.
+/// A student's standing in short, for the class's figures.
 #[derive(Debug, Clone)]
 pub struct ShortStanding {
     /// The name of their account.
     pub login: String,
     /// The student's name.
     pub name: String,
-    /// How often they handed in.
+    /// The number of the student's submissions.
     pub submissions: usize,
     /// The submission that counts.
     pub counts: Option<CountedSubmission>,
@@ -55,9 +55,9 @@ pub struct CountedSubmission {
     pub points: Option<String>,
     /// The submission's verdict in short, once it is graded.
     pub code: Option<String>,
-    /// The digest of what was handed in, once it is graded.
+    /// The digest of the file that was handed in, once it is graded.
     pub digest: String,
-    /// Whether it came late, and that costs points.
+    /// Whether it arrived late, and that costs points.
     pub is_late: bool,
     /// The most points that could be had.
     pub max_points: Option<String>,
@@ -65,14 +65,14 @@ pub struct CountedSubmission {
     pub summary: String,
 }
 
-/// Answers that many who ask at one time share.
+/// Answers that simultaneous requests share.
 #[derive(Debug, Default)]
 pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer>>>);
 
 /// The last answer, and when its making began.
 type SharedAnswer = tokio::sync::Mutex<Option<(Instant, Arc<Vec<ShortStanding>>)>>;
 
-/// With more answers than this those that nobody waits for are forgotten.
+/// If there are more answers than this, those without a waiting request are dropped.
 const MANY: usize = 32;
 
 /// Submissions that are read whole at a time.
@@ -89,7 +89,7 @@ impl SharedStandings {
 }
 
 impl Staff {
-    /// Returns how all students stand in an assignment, in short and by their logins.
+    /// Returns the standing of all students in an assignment, in short and by their logins.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -97,7 +97,7 @@ impl Staff {
         let asked = Instant::now();
         let answer = self.app.0.standings.answer_for(assignment.id);
         let mut last = answer.lock().await;
-        // One that was begun since is as new as any.
+        // An answer that was begun since is up to date.
         if let Some((_, standings)) = last.as_ref().filter(|(began, _)| *began >= asked) {
             return Ok(standings.clone());
         }
@@ -108,7 +108,7 @@ impl Staff {
         Ok(standings)
     }
 
-    /// Returns how all students stand in an assignment.
+    /// Returns the standing of all students in an assignment.
     ///
     /// # Errors
     /// When there is no such assignment.
@@ -118,7 +118,7 @@ impl Staff {
         self.whole_standings(&short).await
     }
 
-    /// Returns how all students stand, with the submissions that count.
+    /// Returns the standing of all students, with the submissions that count.
     ///
     /// # Errors
     /// When the database does not answer.
@@ -196,7 +196,7 @@ async fn read(
     let statement = "SELECT account, due_at FROM extension WHERE assignment = ?";
     let rows = transaction.rows(statement, values![id]).await?;
     let own_due: HashMap<i64, i64> = map(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
-    // The members' names, and those of others who handed something in.
+    // The names of members, and of others who handed something in.
     let statement = "SELECT account.id, account.login, account.name, coalesce(member.role, 'student') AS role
         FROM account LEFT JOIN member ON member.account = account.id AND member.course = ?
         WHERE member.role IS NOT NULL OR account.id IN (SELECT account FROM submission WHERE assignment = ?)";

@@ -19,8 +19,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The time that an upload that came waits until all that came before are written: at a deadline nobody is sent away
-/// whom the server let in.
+/// The time that an upload waits until all earlier ones are written: at a deadline no upload is rejected after it was
+/// let in.
 const CROWD: Duration = Duration::from_secs(240);
 
 const MINUTE: i64 = 60 * 1000;
@@ -33,11 +33,11 @@ pub struct Upload<'a> {
     pub form: Form,
     /// The upload's name: a plain file name.
     pub name: &'a str,
-    /// Where its bytes lie.
+    /// The place of its bytes.
     pub file: &'a Path,
     /// The sender's name for this upload: sent twice, it is one submission.
     pub key: Option<&'a str>,
-    /// When its request came, by the database's clock: what counts for due dates and limits.
+    /// The time when its request arrived, by the database's clock: it decides about due dates and limits.
     pub came_at: i64,
 }
 
@@ -54,18 +54,18 @@ impl Member {
     /// Hands in.
     ///
     /// # Errors
-    /// When the assignment does not take it (any more), or the server can't. Then nothing was handed in, or the same
-    /// key finds it.
+    /// When the assignment does not accept it (any more), or the server can't. Then nothing was handed in, or the same
+    /// key finds the submission.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
             let (taken, found) = (assignment.settings.taken(), upload.form.describe());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
-        // Anybody who sends several at once has them looked at one after another, so that nothing is stored of one that
-        // the one before leaves no room for.
+        // Simultaneous uploads of an account are checked one after another, so that nothing is stored of an upload for
+        // which the one before leaves no room.
         let _turn = self.app.limits.turn(self.account.id).await?;
-        // Nothing is stored of an upload that is refused, or was stored before.
+        // Nothing is stored of an upload that is rejected, or was stored before.
         let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
@@ -84,11 +84,11 @@ impl Member {
         Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
     }
 
-    /// Returns when an upload came whose request is known since then, by the database's clock; and whether it may be
-    /// handed in, by its key and size where it announces them: what is refused later would have come for nothing.
+    /// Returns when the request of an upload arrived, by the database's clock. It also checks the key and the announced
+    /// size: an upload that is rejected later would have been sent for nothing.
     ///
     /// # Errors
-    /// When it may not.
+    /// When it may not be handed in.
     pub async fn check_announced(
         &self,
         assignment: &str,
@@ -113,7 +113,7 @@ impl Member {
         Ok(came_at)
     }
 
-    /// Returns the submission that this upload was before, or nothing where it may become one.
+    /// Returns the earlier submission with this key, or nothing if this upload may become one.
     async fn admit(
         &self,
         transaction: &mut Transaction,
@@ -159,7 +159,7 @@ impl Member {
         came_at: i64,
     ) -> Result<(), Problem> {
         let settings = &assignment.settings;
-        // A failure of the grader costs nobody a try.
+        // A failure of the grader costs no try.
         let statement = "SELECT {now} AS now, count(*) AS n,
                count(CASE WHEN submission.created_at > ? AND submission.created_at <= {now} THEN 1 END) AS recent,
                min(CASE WHEN submission.created_at > ? THEN submission.created_at END) AS oldest

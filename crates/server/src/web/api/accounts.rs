@@ -25,11 +25,11 @@ pub(in crate::web) struct WorkerTokenName {
     pub(in crate::web) name: String,
 }
 
-/// A password as it is to be.
+/// A new password.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct PasswordWish {
-    /// The one so far, if there is one.
+    /// The present password, if there is one.
     #[serde(default)]
     pub(in crate::web) old: String,
     /// 10 to 200 characters, and not the login.
@@ -37,7 +37,7 @@ pub(in crate::web) struct PasswordWish {
     pub(in crate::web) new: String,
 }
 
-/// An account as it is to be.
+/// The new state of an account.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AccountWish {
@@ -102,13 +102,14 @@ answers! { OK:
 }
 
 deeds! { NO_CONTENT:
-    /// Revokes one of one's own tokens.
+    /// Revokes a token of one's own.
     delete "/api/v1/tokens/{id}" "accounts"
         revoke_token(person: Person, { id }) -> "Revoked": person.revoke_token(id);
     /// Shuts an account.
     delete "/api/v1/accounts/{login}" "administration"
         disable_account(admin: Admin, { login }) -> "Shut": admin.disable_account(&login);
-    /// Removes a person: what they handed in, what it came to, their names, and every way in. Nothing of it comes back.
+    /// Removes a person: their submissions with the results, their names, and every way to sign in. This cannot be
+    /// undone.
     delete "/api/v1/accounts/{login}/data" "administration"
         remove_person(admin: Admin, { login }) -> "Removed": admin.remove_person(&login);
     /// Revokes a token of workers.

@@ -24,8 +24,8 @@ use utoipa::ToSchema;
 /// The largest archive of a suite.
 const SUITE: u64 = 64 << 20;
 
-/// An assignment as it is to be. Parts and settings that are not named stay as they are; a setting that is null is
-/// taken away.
+/// The new state of an assignment. Parts and settings that are not named stay as they are; a setting that is null is
+/// removed.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {
@@ -36,7 +36,7 @@ pub(super) struct AssignmentWish {
     #[serde(default, deserialize_with = "whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
-    /// The revision that the change is of: with it the change is refused when somebody made another one.
+    /// The revision that was changed: with it the change is rejected if there is a later one.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     revision: Option<i64>,
 }
@@ -54,7 +54,7 @@ impl AssignmentWish {
     }
 }
 
-/// How to write an export.
+/// The format of an export.
 #[derive(Deserialize)]
 pub(super) struct GradesFormat {
     format: Option<String>,
@@ -68,7 +68,7 @@ pub(super) struct Extension {
     #[serde(deserialize_with = "moment")]
     #[schema(schema_with = moment_schema, required = true)]
     due_at: Option<i64>,
-    /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
+    /// The last event of the audit log that the sender has seen: with it a change is rejected if there is a later one
     /// of this extension.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
@@ -155,7 +155,7 @@ pub(super) async fn export(
     Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
 }
 
-/// Returns how all students stand, with the points of groups and the likely mistakes.
+/// Returns the standing of all students, with the points of groups and the likely mistakes.
 async fn table(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     let standings = staff.standings(assignment).await?;
     let grades = standings.iter().filter_map(|one| one.counts.as_ref()?.grade.as_ref());
@@ -186,8 +186,8 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
 }
 
 answers! { OK:
-    /// Makes an assignment or changes it. Grades stay as they are: that takes a regrade. What late work costs counts at
-    /// once.
+    /// Makes an assignment or changes it. Grades stay as they are until a regrade. A change of the rule for late work
+    /// counts immediately.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
             staff.set_assignment(&assignment, wish.change(), |before| before.with(&wish.settings));
@@ -197,26 +197,26 @@ answers! { OK:
     /// An assignment.
     get "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         assignment(member: Member, { assignment }) -> Assignment: member.assignment(&assignment);
-    /// Shows students what the suite hides: groups that are not visible count in what they see from now on, too.
+    /// Shows students what the suite hides: from now on hidden groups count for them, too.
     put "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         publish(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, true);
     /// Withholds it again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         withhold(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, false);
-    /// How all students stand: which submission counts, and for what.
+    /// The standing of all students: the submission that counts, and its points.
     get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
 }
 
 deeds! { NO_CONTENT:
-    /// Lets a student hand in until another moment than the others.
+    /// Gives a student another due date than the others.
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":
             staff.extend(&assignment, &login, wish.due_at, wish.seen);
-    /// Removes an assignment with all submissions to it, for ever.
+    /// Removes an assignment with all submissions to it, forever.
     delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
-    /// Lets them hand in as long as the others again.
+    /// Gives a student the same due date as the others again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend_no_more(staff: Staff, { assignment, login }, ?asked: SeenEvent) -> "Set":
             staff.extend(&assignment, &login, None, asked.event());

@@ -9,7 +9,7 @@ use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// A course as it is to be.
+/// The new state of a course.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct CourseWish {
@@ -19,7 +19,7 @@ pub(in crate::web) struct CourseWish {
     pub(in crate::web) title: String,
 }
 
-/// A member as they are to be.
+/// The new state of a member.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MemberWish {
@@ -29,13 +29,13 @@ pub(super) struct MemberWish {
     /// `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
-    /// The last event of the audit log that the sender has seen: with it a change is refused when there is a later one
+    /// The last event of the audit log that the sender has seen: with it a change is rejected if there is a later one
     /// of this member.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }
 
-/// Removes a course with its assignments, submissions and log, for ever. Accounts stay.
+/// Removes a course with its assignments, submissions and log, forever. Accounts stay.
 #[utoipa::path(delete, path = "/api/v1/courses/{course}", tag = "administration",
     params(("confirm" = String, Query, description = "The course's name once more")),
     responses((status = 204, description = "Removed")))]
@@ -51,13 +51,13 @@ pub(super) async fn remove_course(
     Ok(StatusCode::NO_CONTENT)
 }
 
-/// That it is meant.
+/// The confirmation of a removal.
 #[derive(Deserialize)]
 pub(super) struct Confirm {
     confirm: String,
 }
 
-/// Whether only to look.
+/// Whether the table is only read, without making members.
 #[derive(Deserialize)]
 pub(super) struct Preview {
     #[serde(default)]
@@ -94,22 +94,21 @@ answers! { CREATED:
 }
 
 answers! { OK:
-    /// Makes somebody a member, and their account when there is none; a new account gets a link that signs in
-    /// once.
+    /// Makes a person a member, and their account if there is none; a new account gets a link that signs in once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
         set_member(staff: Staff, { login }, wish: MemberWish) -> Link:
             staff.set_member(&login, &wish.name, &wish.role, wish.seen);
     /// A new link that signs a student of this course in once.
     post "/api/v1/courses/{course}/members/{login}/link" "courses"
         member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
-    /// The courses that one is in.
+    /// Lists one's own courses.
     get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseOf>: person.courses();
     /// The members of a course.
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
 }
 
 deeds! { NO_CONTENT:
-    /// Takes somebody out of the course; what they handed in stays.
+    /// Takes a person out of the course; what they handed in stays.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
         remove_member(staff: Staff, { login }, ?asked: SeenEvent) -> "The member is removed":
             staff.remove_member(&login, asked.event());

@@ -1,7 +1,7 @@
-//! The API. Each handler says by its first argument whom it serves.
+//! The API. The first argument of each handler names the role that it serves.
 
-/// Operations that answer with what was asked for, one a row: method, address, tag, and name; whom it serves, which
-/// parts of the address it takes, and its body; and what it answers with. Before them stands the status of the answers.
+/// Operations that return data, one a row: method, address, tag, and name; the role that it serves, the parts of the
+/// address that it takes, and its body; and the type of its answer. The status of the answers comes first.
 macro_rules! answers {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)
@@ -17,7 +17,7 @@ macro_rules! answers {
     };
 }
 
-/// The routes of handlers that only do something: the answer says in words what was done.
+/// The routes of handlers that only perform an action: the answer describes in words what was done.
 macro_rules! deeds {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?

@@ -27,7 +27,7 @@ pub(super) async fn openapi() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], crate::web::openapi()).into_response()
 }
 
-/// Returns numbers for Prometheus. They tell of nobody. Without a database that answers they are those of the process
+/// Returns numbers for Prometheus. They describe no person. If the database does not answer they are the process's
 /// alone.
 #[utoipa::path(get, path = "/metrics", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Prometheus' text format")))]

@@ -8,7 +8,7 @@ use crate::{
 use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 
-/// Whether only to look, or to go on although many leave.
+/// Whether the roster is only read, or applied although many members leave.
 #[derive(Deserialize)]
 pub(super) struct RosterParameters {
     #[serde(default)]
@@ -52,7 +52,7 @@ deeds! { ACCEPTED:
 }
 
 deeds! { NO_CONTENT:
-    /// Shuts a platform: nobody comes from it any more, and no scores go there.
+    /// Closes a platform: nobody arrives from it any more, and no scores are sent.
     delete "/api/v1/platforms/{name}" "administration"
         shut_platform(admin: Admin, { name }) -> "Shut": admin.shut_platform(&name);
     /// Makes a new key of the service for platforms; it signs from an hour on.

@@ -1,4 +1,4 @@
-//! Regrades: begun, looked at, applied or discarded.
+//! Regrades: begun, reviewed, applied or discarded.
 use super::super::input::{AddressParts, Body, ListStart, QueryInput, whole_numbers};
 use crate::{
     domain::{Regrade, Settings, Staff},
@@ -10,14 +10,14 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-/// A regrade as it is to be.
+/// The settings of a new regrade.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RegradeWish {
     /// Why, as students read it when it is applied.
     #[schema(value_type = Title)]
     reason: String,
-    /// Settings about grading that are to be others than the assignment's.
+    /// Settings about grading that differ from the assignment's.
     #[serde(default, deserialize_with = "whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
@@ -37,7 +37,7 @@ pub(super) async fn show(
 }
 
 answers! { CREATED:
-    /// Grades all submissions again, beside their grades. Nothing changes until it is applied.
+    /// Grades all submissions again, next to their grades. Nothing changes until the regrade is applied.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         begin(staff: Staff, { assignment }, wish: RegradeWish) -> Regrade: async {
             let settings = staff.assignment(&assignment).await?.settings.with(&wish.settings)?;
@@ -49,7 +49,7 @@ answers! { OK:
     /// Makes its results count.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply" "regrades"
         apply(staff: Staff, { assignment, id }) -> Regrade: staff.apply_regrade(&assignment, id);
-    /// Gives it up; nothing changes.
+    /// Discards a regrade; nothing changes.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard" "regrades"
         discard(staff: Staff, { assignment, id }) -> Regrade: staff.discard_regrade(&assignment, id);
     /// The regrades of an assignment, latest first.

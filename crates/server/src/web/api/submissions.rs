@@ -27,8 +27,8 @@ pub(super) struct UploadParameters {
     form: Option<String>,
 }
 
-/// Hands in: the body is the file, or a form (`multipart/form-data`) with a field `file`. With an `Idempotency-Key` the
-/// same upload sent twice is one submission: 201 the first time, 200 from then on.
+/// Hands in a submission: the body is the file, or a form (`multipart/form-data`) with a field `file`. With an
+/// `Idempotency-Key` the same upload sent twice is one submission: 201 the first time, 200 from then on.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
     params(("name" = Option<String>, Query, description = "The file's name"),
         ("form" = Option<String>, Query, description = "program, sources or traces; otherwise recognized from the \
@@ -67,7 +67,7 @@ pub(in crate::web) async fn receive(
     let settings = member.assignment(assignment).await?.settings;
     let most = settings.max_bytes;
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
-    // Of a form nobody knows yet whether it was sent before.
+    // A form does not show yet whether it was sent before.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced(&request).unwrap_or(0)));
     let came_at = match member.check_announced(assignment, announced, since).await {
         Ok(came_at) => came_at,
@@ -102,7 +102,7 @@ pub(super) struct MarkWish {
     #[serde(default)]
     #[schema(max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     comment: String,
-    /// When the last mark was given that the sender has seen: with it a mark is refused when there is a later one.
+    /// The time of the last mark that the sender has seen: with it a mark is rejected if there is a later one.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     marked_at: Option<i64>,
 }
@@ -126,7 +126,8 @@ pub(super) async fn report(
 ) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
-    // It holds words of a stranger's program: a browser shows it as a page of nobody, without this site's cookies.
+    // The report holds words of a stranger's program: a browser shows it as a page of no site, without this site's
+    // cookies.
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src \
         'unsafe-inline'; img-src data:"
@@ -146,7 +147,7 @@ pub(super) async fn upload(
     asked: HeaderMap,
 ) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;
-    // A stranger's file, to be kept and never to be shown. Its name was made harmless when it came.
+    // A stranger's file, which is saved and never shown. Its name was made harmless when it arrived.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream")),
@@ -233,19 +234,19 @@ answers! { OK:
     /// One's own submissions, newest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/submissions" "submissions"
         own(member: Member, { assignment }) -> Vec<Submission>: member.submissions(&assignment);
-    /// A submission: where it is in the queue, and what it came to.
+    /// A submission: its place in the queue, and its result.
     get "/api/v1/courses/{course}/submissions/{id}" "submissions"
         submission(member: Member, { id }) -> Submission: member.submission(id);
-    /// How its grade came to be: who, when, why, by which version and rules.
+    /// The history of its grade: the person, the time, the reason, the version and the rules.
     get "/api/v1/courses/{course}/submissions/{id}/history" "submissions"
         history(member: Member, { id }) -> Vec<History>: member.history(id);
 }
 
 deeds! { NO_CONTENT:
-    /// Asks staff to look at one's own submission again.
+    /// Requests that staff reviews one's own submission.
     post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
         request(member: Member, { id }, wish: RequestWish) -> "Staff sees it": member.request(id, &wish.text);
-    /// Removes a submission with its grades and reports, for ever.
+    /// Removes a submission with its grades and reports, forever.
     delete "/api/v1/courses/{course}/submissions/{id}" "submissions"
         remove_submission(staff: Staff, { id }) -> "Removed": staff.remove_submission(id);
 }

@@ -30,17 +30,17 @@ pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
 }
 
 answers! { OK:
-    /// Says that the worker is alive.
+    /// Reports that the worker is alive.
     post "/api/v1/worker/tick" "workers"
         tick(remote: Remote, alive: SignOfLife) -> Manners:
             remote.tick(alive.slots, alive.fault.as_deref(), &alive.version);
-    /// Extends a lease, and says how far the grading is.
+    /// Extends a lease, and reports the progress of the grading.
     post "/api/v1/worker/renew" "workers"
         renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
-    /// Gives a job back at no cost.
+    /// Returns a job at no cost.
     post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> LeaseAnswer:
         remote.release(&lease);
-    /// Says that a try failed.
+    /// Reports that a try failed.
     post "/api/v1/worker/fail" "workers"
         fail(remote: Remote, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
     /// Stores a result.
@@ -73,7 +73,7 @@ pub(super) async fn artifact(
     Ok((kind, download::whole(opened, None)).into_response())
 }
 
-/// Stores a report of a job that the worker holds; the digest must be that of its bytes.
+/// Stores a report of a job that the worker holds; its bytes must match the digest.
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),

@@ -51,7 +51,7 @@ pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -
 }
 
 deeds! {
-    /// Everybody who is signed in as this person is to sign in again, by the new one.
+    /// Every session of this person must sign in again, by the new password.
     set_password(person: Person, form: PasswordWish): person.set_password(&form.old, &form.new) => "/sign-in";
     revoke_token(person: Person, { id }): person.revoke_token(id) => "/account";
 }

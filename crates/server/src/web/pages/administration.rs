@@ -38,7 +38,7 @@ struct AdminPage {
     after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
-    /// The addresses that platforms are told.
+    /// The addresses for platforms.
     public: String,
     queue: Queue,
     events: Vec<Event>,

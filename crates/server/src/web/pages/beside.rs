@@ -1,4 +1,4 @@
-//! Two submissions to an assignment beside each other: the scenes that they do not have both right or both wrong.
+//! Two submissions to an assignment side by side: the scenes in which they differ.
 use super::{
     super::input::{AddressParts, QueryInput},
     Page, PageFrame, grades, show, text,
@@ -12,7 +12,7 @@ use serde::Deserialize;
 use std::collections::BTreeSet;
 use url::form_urlencoded::byte_serialize;
 
-/// The other submission: its number on this server, or the login of the student whose last one is meant.
+/// The other submission: its number on this server, or the login of a student, whose last submission is meant.
 #[derive(Deserialize)]
 pub(super) struct OtherSubmission {
     #[serde(default)]

@@ -1,5 +1,4 @@
-//! The page that checks traces in a browser. It is the grader's, and holds nothing of anybody: all who know
-//! the address may have it.
+//! The page that checks traces in a browser. It is the grader's and holds no data of people: any visitor may read it.
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::State,

@@ -26,7 +26,7 @@ struct CoursePage {
 struct Row {
     assignment: Assignment,
     work: OwnWork,
-    /// How the class stands, for staff.
+    /// The state of the class, for staff.
     overview: Option<Overview>,
 }
 
@@ -38,11 +38,11 @@ pub(super) struct OwnWork {
     pub(super) is_late: bool,
     /// Whether nothing is taken any more, not even late.
     pub(super) is_over: bool,
-    /// How often they may still hand in, where that is limited.
+    /// The number of submissions that are left, if it is limited.
     pub(super) left: Option<usize>,
-    /// All that they handed in, newest first.
+    /// All submissions of the student, newest first.
     pub(super) submissions: Vec<Submission>,
-    /// The submission with the most points, the later one of equals.
+    /// The submission with the most points, of equal ones the later.
     pub(super) best: Option<Submission>,
 }
 
@@ -155,7 +155,7 @@ pub(super) struct People {
 }
 
 impl People {
-    /// Returns the address of the page behind the last of these logins, where there are more.
+    /// Returns the address of the page after the last of these logins, if there are more.
     pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
         let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
         Some(query.append_pair("q", &self.q).append_pair("after", last?).finish())
@@ -165,7 +165,7 @@ impl People {
 async fn members_page(staff: &Staff, look: People, link: Option<(String, String)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
-    // Before the members: what somebody changes in between is not seen.
+    // Read before the members: later changes are not seen.
     let seen = staff.last_event().await?;
     let (members, has_more) = staff.members_page(&look.q, &look.after).await?;
     let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));

@@ -31,7 +31,7 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
-    /// Scenes that somebody on the page has wrong, and who.
+    /// Scenes that students on the page have wrong, and these students.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
     /// Whether students see less than staff until it is published.
@@ -50,7 +50,7 @@ struct RegradePage {
 /// Students on one page.
 const PAGE: usize = 100;
 
-/// Whom to show, in what order, and which page of them.
+/// The choice of students, their order, and the page.
 #[derive(Deserialize)]
 pub(super) struct Look {
     #[serde(default)]
@@ -67,8 +67,7 @@ pub(super) struct Look {
 }
 
 impl Look {
-    /// Returns those who are to be shown, how many there are on all pages, and the addresses of the pages before and
-    /// after.
+    /// Returns the students to show, their number on all pages, and the addresses of the pages before and after.
     fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
         let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
@@ -110,7 +109,7 @@ pub(super) struct NewRegrade {
     grading: Grading,
 }
 
-/// Returns the frame of the class, and of what lies behind it.
+/// Returns the frame of the class, and of the pages below it.
 pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")

@@ -1,7 +1,7 @@
 //! The pages. They work without JavaScript; with it a submission's state changes by itself, and files can be dropped.
 
-/// Handlers that do one thing and lead on to a page, one a row: name, whom it serves, which parts of the address it
-/// takes, and its form; what it does, and where it leads.
+/// Handlers that do one thing and lead to a page, one a row: name, the role that they serve, the parts of the address,
+/// and the form; the action, and the next page.
 macro_rules! deeds {
     ($($(#[doc = $doc:literal])*
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
@@ -48,7 +48,7 @@ use axum::{
 };
 use url::form_urlencoded::byte_serialize;
 
-/// A router, and the list of what is in it.
+/// A router, and the list of its contents.
 macro_rules! pages {
     ($($method:ident $path:literal => $handler:path,)*) => {
         /// Every page: method and path.
@@ -138,7 +138,7 @@ pages! {
 }
 
 async fn style() -> Response {
-    // One style sheet for reports and pages; what only pages have comes behind it.
+    // One style sheet for reports and pages; rules for pages alone follow.
     constant(
         "text/css; charset=utf-8",
         concat!(
@@ -162,7 +162,7 @@ fn constant(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
 }
 
-/// The frame of every page; as it is by default, nobody's.
+/// The frame of every page; by default without a person.
 #[derive(Default)]
 pub(super) struct PageFrame {
     /// The person who is signed in.
@@ -172,7 +172,7 @@ pub(super) struct PageFrame {
     way: Vec<(String, String)>,
     /// The pages about the same thing: addresses and titles.
     tabs: Vec<(String, &'static str)>,
-    /// The address of the one of them that this page is.
+    /// The address of this page, which is one of them.
     tab: String,
 }
 
@@ -205,7 +205,7 @@ impl PageFrame {
         self
     }
 
-    /// Goes on to a page: to one of those about the same thing, or to one behind them.
+    /// Returns the frame of a page about the same subject, or of one below it.
     fn then(mut self, address: String, title: &str) -> Self {
         if self.tabs.iter().any(|(tab, _)| *tab == address) {
             self.tab = address;
@@ -239,13 +239,13 @@ struct ProblemPage {
     problem: Problem,
 }
 
-/// Turns refusals into pages, and shows the way in to who is not signed in.
+/// Turns rejections into pages, and shows the sign-in page to requests that are not signed in.
 pub(super) async fn show_problems(request: Request, next: Next) -> Response {
     let wanted = (request.method() == Method::GET).then(|| request.uri().clone());
     as_page(next.run(request).await, wanted.as_ref())
 }
 
-/// Turns refusals that no page has a part in into pages, for browsers.
+/// Turns rejections outside of pages into pages, for browsers.
 pub(super) async fn show_others(request: Request, next: Next) -> Response {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let is_browser = accepted.is_some_and(|accepted| accepted.contains("text/html"));
@@ -264,8 +264,7 @@ pub(super) async fn wrong_method(method: Method) -> Problem {
     Problem::wrong_method(method.as_str())
 }
 
-/// Returns a refusal as a page; other answers as they are. Who is not signed in, and wanted a page, comes to it
-/// afterwards.
+/// Returns a rejection as a page; other answers stay. A person who must sign in first comes to the page afterwards.
 fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     if let Some(wanted) = wanted.filter(|_| problem.status() == StatusCode::UNAUTHORIZED) {

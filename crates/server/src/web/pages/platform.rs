@@ -95,8 +95,9 @@ pub(super) struct NewPlatform {
     hosts: String,
 }
 
-/// Returns the browser's word while it comes from a platform: sent with what another site makes it send, which is what
-/// the platform's answer is. In a frame many browsers keep it apart, or drop it; so nobody comes in by a frame.
+/// Returns the browser's secret while it comes from a platform. Other sites must be able to make the browser send it,
+/// because the platform's answer comes that way. In a frame many browsers keep it apart, or drop it, so that no sign-in
+/// works in a frame.
 fn browser_word(app: &App, word: &str) -> String {
     let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
@@ -131,8 +132,7 @@ pub(super) async fn login(
         for (name, value) in fields {
             value.map(|value| query.append_pair(name, &value));
         }
-        // A link and no form: where a form may lead is asked of all redirections, too, and this one goes on to the
-        // platform.
+        // A link and no form: the policy for forms covers all redirections, too, and this one leads to the platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
@@ -158,7 +158,7 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> 
     Ok(sign_in::enter(&visitor.app, &launched.session, &launched.to))
 }
 
-/// Returns the service's public keys, where platforms look for them.
+/// Returns the service's public keys, at the address that platforms read.
 pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
     let keys = app.platform_keys().await?;
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())

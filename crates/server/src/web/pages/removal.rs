@@ -1,4 +1,4 @@
-//! Removing for ever: forms that say what goes, and name what is meant.
+//! Permanent removal: forms that list what is removed, and require its name.
 use super::{
     super::input::{AddressParts, Fields},
     see,
@@ -10,7 +10,7 @@ use crate::{
 use axum::response::Redirect;
 use serde::Deserialize;
 
-/// The form's confirmation: the name of the thing that is to be removed.
+/// The form's confirmation: the name of the thing to remove.
 #[derive(Deserialize)]
 pub(super) struct Confirmation {
     confirm: String,

@@ -8,8 +8,8 @@ const LARGEST: u64 = 4 << 20;
 /// Elements that no report has: by them a page sends something, or takes something in.
 const FOREIGN: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
 
-/// Returns a report without its head, which the page has; nothing of one that a grader of another version wrote, or
-/// that is too large.
+/// Returns a report without its head, which the page has; `None` for one of another version's grader, or a report that
+/// is too large.
 pub(super) async fn read(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
     if file.artifact.size > LARGEST {
         return Ok(None);

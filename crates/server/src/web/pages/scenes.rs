@@ -5,7 +5,8 @@ use std::{cmp::Reverse, collections::BTreeMap};
 /// The greatest number of scenes that are named in a sentence.
 const NAMED: usize = 3;
 
-/// Returns the scenes that somebody has wrong, by the results that count, and those who have, most of them first.
+/// Returns the scenes that students have wrong by the results that count, and these students; the most frequent scenes
+/// come first.
 pub(super) fn wrong(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {

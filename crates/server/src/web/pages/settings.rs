@@ -30,7 +30,7 @@ struct SettingsPage {
     megabytes: f64,
 }
 
-/// A suite in a form: value, words, and whether it is this one.
+/// A suite in a form: value, words, and whether it is selected.
 pub(super) type SuiteOption = (String, String, bool);
 
 /// Returns the suites to choose from: those that were uploaded to the course, and those that come with the grader.
@@ -71,7 +71,7 @@ fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
 }
 
 impl Grading {
-    /// Returns the settings with what the form says.
+    /// Returns the settings with the form's values.
     pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
         let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED) {
@@ -138,7 +138,7 @@ impl NewSettings {
     }
 }
 
-/// Returns the moment that a field with a date says; the moment that it had where that is in the same minute.
+/// Returns the moment of a field with a date; the former moment if it is in the same minute.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);

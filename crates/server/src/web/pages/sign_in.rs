@@ -48,7 +48,7 @@ pub(super) struct Password {
     to: String,
 }
 
-/// The page that somebody wanted who was not signed in.
+/// The page that a person requested before signing in.
 #[derive(Deserialize)]
 pub(super) struct NextPage {
     #[serde(default)]

@@ -1,4 +1,4 @@
-//! How a class did, in numbers, and who is in which part of it.
+//! The results of a class in numbers, and the students in each part of it.
 use crate::{
     domain::{CountedSubmission, ShortStanding},
     task::rounded,
@@ -18,7 +18,7 @@ pub(super) const PARTS: [(&str, &str); 6] = [
     ("missing", "nothing handed in"),
 ];
 
-/// Returns whether a student is in a part of the class; everybody is in one that has no name.
+/// Returns whether a student is in a part of the class; a part without a name has all.
 pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     let counts = standing.counts.as_ref();
     let code = counts.and_then(|counts| counts.code.as_deref());
@@ -41,12 +41,12 @@ pub(super) fn mistake(counts: &CountedSubmission) -> Option<&str> {
 /// Students with something in common: what that is, their logins, and a submission that shows it.
 pub(super) type SharedBy = (String, Vec<String>, i64);
 
-/// How a class did.
+/// The results of a class.
 pub(super) struct Statistics {
     pub(super) students: usize,
-    /// How many are in each of the [`PARTS`]: names, words, numbers.
+    /// The number of students in each of the [`PARTS`]: names, words, numbers.
     pub(super) parts: Vec<(&'static str, &'static str, usize)>,
-    /// Mean and median of the points of all whose work ran, in percent; nothing where nobody's did.
+    /// Mean and median of the points of all students whose work ran, in percent; `None` without such work.
     pub(super) points: Option<(String, String)>,
     /// Mistakes that students are likely to have made, the most frequent first.
     pub(super) mistakes: Vec<SharedBy>,
@@ -76,7 +76,7 @@ impl Statistics {
         }
     }
 
-    /// Returns how many students are in a part of the class.
+    /// Returns the number of students in a part of the class.
     pub(super) fn count(&self, part: &str) -> usize {
         self.parts.iter().find(|(name, ..)| *name == part).map_or(0, |(.., count)| *count)
     }
@@ -89,7 +89,7 @@ fn share(counts: &CountedSubmission) -> Option<f64> {
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
 }
 
-/// Returns what students have in common, the most frequent first.
+/// Returns the mistakes that students share, the most frequent first.
 fn shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {

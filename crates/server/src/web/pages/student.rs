@@ -1,4 +1,4 @@
-//! One student's work, as staff sees it; and the table by which a class comes in.
+//! One student's work, as staff sees it; and the table by which a class is imported.
 use super::{
     super::{
         api::{RequestWish, cell},
@@ -77,7 +77,7 @@ pub(super) struct NewMark {
     points: String,
     #[serde(default)]
     comment: String,
-    /// When the mark was given that the page showed.
+    /// The time of the mark that the page showed.
     marked_at: Option<String>,
 }
 
@@ -90,7 +90,7 @@ pub(super) struct ImportedTable {
 
 pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    // Before the work: what somebody changes in between is not seen.
+    // Read before the work: later changes are not seen.
     let seen = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
@@ -101,7 +101,7 @@ pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, 
 }
 
 /// Reads points; a number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
-/// Nothing where the field is empty.
+/// Nothing if the field is empty.
 fn points(field: &str) -> Option<String> {
     match field.split_once(',') {
         Some((whole, part)) if (1..=2).contains(&part.len()) => Some(format!("{whole}.{part}")),

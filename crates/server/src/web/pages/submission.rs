@@ -1,4 +1,4 @@
-//! Handing in, and what came of it.
+//! The page for handing in, and for its result.
 use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
@@ -37,11 +37,11 @@ struct SubmissionPage {
     history: Vec<History>,
     /// The change that it has made since the one before it.
     change: Option<String>,
-    /// All that its owner handed in, oldest first.
+    /// All submissions of its owner, oldest first.
     attempts: Vec<Submission>,
-    /// The name of the report that is shown: staff's own, where there is one.
+    /// The name of the report that is shown: staff's own, if there is one.
     page: Option<&'static str>,
-    /// That report, where it can be part of the page.
+    /// The report, if it can be part of the page.
     report: Option<String>,
 }
 
@@ -113,7 +113,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
     })
 }
 
-/// Returns the page that is shown of a submission: staff's own, where there is one that the reader may see.
+/// Returns the page of a submission that is shown: staff's own, if there is one that the reader may see.
 fn page_of(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();

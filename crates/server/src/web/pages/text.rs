@@ -31,7 +31,7 @@ pub(super) fn bare_points(points: &Option<String>) -> String {
     points.as_deref().map(rounded).unwrap_or_default()
 }
 
-/// Returns where a regrade is, in words.
+/// Describes the state of a regrade.
 pub(super) fn regrade(state: &RegradeState) -> &'static str {
     match state {
         RegradeState::Open => "open",
@@ -40,7 +40,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
     }
 }
 
-/// Returns the facts that a learning platform is to know.
+/// Describes a score for a learning platform.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
@@ -54,7 +54,7 @@ pub(super) fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }
 
-/// Returns how the chip of a submission's state looks.
+/// Returns the class of the chip for a submission's state.
 pub(super) fn chip_class(submission: &Submission) -> &'static str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) => "warn",

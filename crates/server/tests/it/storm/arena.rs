@@ -321,7 +321,7 @@ pub(super) fn signal(worker: &Child, signal: i32) {
     unsafe { libc::kill(worker.id().cast_signed(), signal) };
 }
 
-/// Wakes this test's workers when they have been stopped for twice their lease, for ever.
+/// Wakes this test's workers when they have been stopped for twice their lease, forever.
 fn wake_the_frozen() {
     let own = std::process::id().to_string();
     let mut frozen: BTreeMap<i32, Instant> = BTreeMap::new();

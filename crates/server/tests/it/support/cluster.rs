@@ -23,7 +23,7 @@ struct Programs {
 }
 
 impl Programs {
-    /// Nothing where PostgreSQL is not installed.
+    /// Nothing if PostgreSQL is not installed.
     fn find() -> Option<Self> {
         let mut folders: Vec<PathBuf> = fs::read_dir("/usr/lib/postgresql")
             .map(|versions| versions.flatten().map(|version| version.path().join("bin")).collect())
@@ -134,7 +134,7 @@ pub(crate) struct Cluster {
 }
 
 impl Cluster {
-    /// A new server that really writes to the disk; nothing where PostgreSQL is not installed.
+    /// A new server that really writes to the disk; nothing if PostgreSQL is not installed.
     pub(crate) fn start() -> Option<Self> {
         let programs = Programs::find()?;
         let folder = tempfile::tempdir().expect("a folder");
@@ -252,7 +252,7 @@ pub(crate) struct Pooler {
 }
 
 impl Pooler {
-    /// Nothing where PgBouncer is not installed.
+    /// Nothing if PgBouncer is not installed.
     pub(crate) fn start(cluster: &Shared) -> Option<Self> {
         let program = Path::new("/usr/sbin/pgbouncer");
         if !program.exists() {

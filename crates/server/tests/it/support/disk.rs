@@ -13,7 +13,7 @@ pub(crate) struct SmallDisk {
 }
 
 impl SmallDisk {
-    /// One of this many bytes; nothing where this user may not mount.
+    /// One of this many bytes; nothing if this user may not mount.
     pub(crate) fn mount(bytes: u64) -> Option<Self> {
         let folder = tempfile::tempdir().expect("a folder");
         let mut disk = Self::mount_at(folder.path(), bytes)?;

@@ -28,7 +28,7 @@ impl Fresh {
         Self { database, address, _folder: None, pooler: None, _cluster: None }
     }
 
-    /// A database in the tests' own PostgreSQL, without tables; nothing where PostgreSQL is not installed.
+    /// A database in the tests' own PostgreSQL, without tables; nothing if PostgreSQL is not installed.
     pub(crate) async fn postgres() -> Option<Self> {
         let cluster = cluster::Shared::join()?;
         let address = cluster.new_database();
@@ -36,7 +36,7 @@ impl Fresh {
         Some(Self { database, address, _folder: None, pooler: None, _cluster: Some(cluster) })
     }
 
-    /// The same behind PgBouncer; nothing where either is not installed.
+    /// The same behind PgBouncer; nothing if either is not installed.
     pub(crate) async fn pooled() -> Option<Self> {
         let cluster = cluster::Shared::join()?;
         let pooler = cluster::Pooler::start(&cluster)?;

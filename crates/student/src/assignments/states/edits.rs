@@ -25,7 +25,7 @@ fn row(of: &'static TermRow, slip: Slip) -> RowOf<StepMistake> {
     }
 }
 
-/// All these rows, those of functions that are not written first.
+/// All these rows; rows of functions that are not written come first.
 pub static EDITS: LazyLock<Vec<RowOf<StepMistake>>> = LazyLock::new(|| {
     let of = |row: &'static TermRow| row.slips.iter().copied().flatten().map(move |slip| (row, *slip));
     let mut all: Vec<(&TermRow, Slip)> = TERMS.iter().flat_map(of).collect();

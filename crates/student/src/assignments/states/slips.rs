@@ -2,7 +2,7 @@
 /// The table: each slip with the words of a sentence about it, behind the quantity's name.
 macro_rules! slips {
     ($($(#[$about:meta])* $slip:ident$(($by:ty))? $words:literal;)*) => {
-        /// A small change of a quantity. A row of the catalogue is one of them at one [quantity](super::Term).
+        /// A small change of a quantity. A row of the catalogue is a slip in a [quantity](super::Term).
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum Slip { $(#[doc = $words] $(#[$about])* $slip$(($by))?,)* }
 

@@ -309,7 +309,7 @@ impl TermRow {
 }
 
 impl Term {
-    /// Returns the quantity of which this one is a part.
+    /// Returns the quantity of which this is a part.
     const fn whole(self) -> Option<Self> {
         Some(match self {
             Self::SpringElastic | Self::SpringDamping => Self::Spring,
@@ -320,7 +320,7 @@ impl Term {
         })
     }
 
-    /// Returns whether a slip in this quantity is one in the other.
+    /// Returns whether a slip in this quantity is also a slip in the other.
     pub fn covers(self, other: Self) -> bool {
         let mut part = Some(other);
         while let Some(one) = part {
@@ -348,7 +348,7 @@ pub struct Edit {
 }
 
 impl Edit {
-    /// Returns the part of the assignment that it belongs to.
+    /// Returns the part of the assignment to which it belongs.
     #[must_use]
     pub const fn area(self) -> Area {
         self.term.row().area()

@@ -1,4 +1,4 @@
-//! The sentences of rows: each says a slip of a quantity, and its exact form.
+//! The sentences of rows: each describes a slip of a quantity, and its exact form.
 use super::{slips::Slip, terms::TermRow};
 use crate::assignments::rows::Area;
 
@@ -93,7 +93,7 @@ impl Slip {
     }
 }
 
-/// Returns the meaning of a further power of a factor that stands with this power already.
+/// Returns the meaning of a further power of a factor that has this power already.
 fn power(has: i8, by: i8, factor: &str) -> String {
     match (has.signum(), (has + by).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),

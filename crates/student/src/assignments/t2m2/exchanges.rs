@@ -3,7 +3,7 @@ use super::{Inputs, inputs::root};
 use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
-/// One thing that stands for another.
+/// One input that is used instead of another.
 pub struct Exchange {
     /// The explanation's key.
     pub key: &'static str,
@@ -11,7 +11,7 @@ pub struct Exchange {
     pub sentence: &'static str,
     /// The exact form.
     pub detail: &'static str,
-    /// How unlikely it is; see `study`.
+    /// The cost of the guess; see `study`.
     pub cost: f64,
     kinds: &'static [PairKind],
     /// Makes the exchange.
@@ -55,7 +55,7 @@ pub fn find_exchange(key: &str) -> Option<&'static Exchange> {
 /// The table: key, kinds of pairs, how unlikely it is, and the exchange; the sentence; the exact form.
 macro_rules! exchanges {
     ($($key:literal $kinds:tt $cost:literal: $apply:expr => $sentence:literal => $detail:literal;)*) => {
-        /// All of them.
+        /// All exchanges.
         pub const EXCHANGES: &[Exchange] = &[$(Exchange {
             key: $key,
             sentence: $sentence,

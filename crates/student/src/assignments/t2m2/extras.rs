@@ -2,7 +2,7 @@
 use super::{Inputs, Subject, formulas::Letter, inputs::root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
-/// Letters that do not belong into the formulas of a polynomial, but may stand there.
+/// Returns letters that do not belong in the formulas of a polynomial, but may be used there.
 pub fn extras(subject: Subject) -> &'static [Letter] {
     match subject {
         Subject::ParticleOverlap | Subject::ParticleApproach => PARTICLE_EXTRAS,

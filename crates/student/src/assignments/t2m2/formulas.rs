@@ -1,16 +1,16 @@
 //! The formulas of collisions.md 2 as data: each coefficient a sum of weighted products of letters.
 //!
-//! The fair rules' formulas (`judge::fair::formulas`) say what is right, and a test compares these tables with them. As
-//! data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of the
-//! quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
+//! The fair rules' formulas (`judge::fair::formulas`) decide what is right, and a test compares these tables with them.
+//! As data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of
+//! the quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
 use super::{Inputs, Subject};
 use fosssim_num::bounded::BoundedValue;
 
 /// A quantity of a formula.
 pub struct Letter {
-    /// How a message calls it.
+    /// The name in a message.
     pub name: &'static str,
-    /// The letter's meaning, in the assignment's notation; empty where the name says it.
+    /// The letter's meaning, in the assignment's notation; empty if the name explains it.
     pub meaning: &'static str,
     /// The letter's degree in the displacements.
     pub order: u8,
@@ -68,7 +68,7 @@ pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     }
 }
 
-/// Returns the ways to write one polynomial down, all of them right, the assignment's first.
+/// Returns the ways to write one polynomial, all of them right, the assignment's first.
 pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP,
@@ -211,7 +211,7 @@ const SUPPLIED: [Letter; 10] = [
     letter("j", "d32.d21", 2, |inputs| inputs.d32().dot(inputs.d21())),
 ];
 
-/// The terms of the quintic, but for the second one of t^3, of which there are two versions.
+/// The terms of the quintic, without the second term of t^3, of which there are two versions.
 macro_rules! quintic {
     ($slip:expr) => {
         Formula {

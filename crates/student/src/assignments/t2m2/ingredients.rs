@@ -5,11 +5,11 @@ use fosssim_num::bounded::BoundedVector;
 
 /// A vector that a student may have put into a dot product.
 pub struct Ingredient {
-    /// How a message calls it.
+    /// The name in a message.
     pub name: &'static str,
     /// The ingredient's value.
     pub value: fn(&Inputs) -> BoundedVector,
-    /// How unlikely it is there.
+    /// The cost of the guess there.
     pub cost: f64,
 }
 

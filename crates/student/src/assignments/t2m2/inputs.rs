@@ -13,7 +13,7 @@ pub struct Inputs {
     pub x: [BoundedVector; 3],
     /// Displacements likewise; a half-plane has none.
     pub d: [BoundedVector; 3],
-    /// The radius of the particle and that of the other object (0 for a half-plane).
+    /// The radius of the particle and of the other object (0 for a half-plane).
     pub radii: [BoundedValue; 2],
     /// The value for the square of the sum of the radii.
     pub square: BoundedValue,

@@ -1,15 +1,15 @@
 //! Probe scenes: small scenes that make every part of a program's work visible.
 //!
 //! Ordinary scenes hide mistakes: edges stand still, normals have length 1, nothing touches at the very end of a step.
-//! When the program itself is at hand it can be run on these instead. Each is about one part of the assignment; groups
-//! of bodies that have nothing to do with one another stand far apart in one scene, so that few runs show much.
+//! A program that is at hand can be run on these instead. Each is about one part of the assignment; independent groups
+//! of bodies are far apart in one scene, so that few runs show much.
 //!
-//! Where particles start and how far they go in a step are integers or small dyadic fractions, and the step is half a
-//! second, in the large ones a quarter; in three it is no power of two, which tells velocities from displacements. So
-//! the first step's polynomials have coefficients that can be checked by hand; in the `drift` scenes those of every
-//! step have, because particles that are fixed and move are never pushed from their way (simulation.md 1). Gaps and
-//! displacements of the narrow ones are a half and about four of a millionth: whatever a program adds to a time or to
-//! the approach as a margin shows.
+//! Starts and displacements of particles are integers or small dyadic fractions, and the step is half a second, in the
+//! large scenes a quarter; in three it is no power of two, which distinguishes velocities from displacements. The first
+//! step's polynomials therefore have coefficients that can be checked by hand. In the `drift` scenes this holds for
+//! every step, because particles that are fixed and move are never pushed from their way (simulation.md 1). Gaps and
+//! displacements of the narrow scenes are half a millionth and about four millionths: any margin that a program adds to
+//! a time or to the approach shows.
 //!
 //! This runs nothing and never judges. The scenes are the same every time.
 /// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones. Each is sound for both

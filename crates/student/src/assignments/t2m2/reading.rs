@@ -5,8 +5,7 @@ use super::{
 };
 use fosssim_findings::explanation::Reading;
 
-/// Returns the letter that a message calls so: one of the formula's own, or one that does not belong there and may
-/// stand there.
+/// Returns the letter with this name in messages: one of the formula's own, or a foreign one that may be used there.
 #[must_use]
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
     let own = readings(reading.subject).get(reading.number)?.letters.iter();
@@ -19,7 +18,7 @@ mod tests {
     use fosssim_findings::explanation::Subject;
     use fosssim_model::sim::PairKind;
 
-    /// A name stands for one letter, so that a message about it says what is meant.
+    /// Tests that a name belongs to one letter, so that a message with it is clear.
     #[test]
     fn every_letter_is_found_by_its_name() {
         for subject in PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied() {

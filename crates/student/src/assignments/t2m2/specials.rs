@@ -22,7 +22,7 @@ pub fn find_special(key: &str) -> Option<&'static Special> {
     SPECIALS.iter().find(|special| special.key == key)
 }
 
-/// All of them.
+/// All special rows.
 pub const SPECIALS: &[Special] = &[
     Special {
         subject: Subject::EdgeApproach,
@@ -98,8 +98,8 @@ fn constant_alpha(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-closing.dot(closing), closing.dot(n)]
 }
 
-/// Returns how the particle and the point of the edge that was closest at the start close in on each other, and the
-/// vector from the one to the other.
+/// Returns the approach of the particle and the point of the edge that was closest at the start, and the vector between
+/// them.
 fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
     let along = inputs.x32();
     let alpha = inputs.x12().dot(along) / along.dot(along);

@@ -1,5 +1,5 @@
 //! The pairs of some particles in a row, one per lane, with every edge and every half-plane, and of one particle with
-//! some others or some edges: coefficients, and what the closed forms of the certificate say about them.
+//! some others or some edges: coefficients, and the results of the certificate's closed forms for them.
 use super::{
     super::{
         particle_edge::{self, EdgePolynomials},
@@ -17,17 +17,17 @@ use std::ops::Range;
 
 crate::drops_leading!();
 
-/// Numbers of a pair with an edge: its coefficients, what is known about it ([`OPEN`]), and room.
+/// Numbers of a pair with an edge: its coefficients, the known facts ([`OPEN`]), and room.
 pub(super) const EDGE_ROW: usize = 20;
 
-/// Where what is known about it stands.
+/// The place of the facts about it.
 pub(super) const EDGE_KNOWN: usize = 17;
 
-/// Numbers of a pair of particles, or with a half-plane: the parabola's coefficients, what is known, the line's, and
-/// room. A polynomial is read soon after it is stored, which is fast where both are done at once.
+/// Numbers of a pair of particles, or with a half-plane: the parabola's coefficients, the known facts, the line's
+/// coefficients, and room. A polynomial is read soon after it is stored, which is fast if both are done together.
 pub(super) const TWO_ROW: usize = 8;
 
-/// Where what is known about it stands.
+/// The place of the facts about it.
 pub(super) const TWO_KNOWN: usize = 3;
 
 /// The place where the line begins.
@@ -37,9 +37,9 @@ pub(super) const LINE: usize = 4;
 /// more.
 pub(super) const BEHIND: usize = 8;
 
-/// Facts about a pair, in the bits of a number: the lowest one is this where the certificate has to be asked
-/// whether there is an impact; the next ones say which of its coefficients are so small that they are dropped when they
-/// lead; the highest ones say nothing.
+/// Facts about a pair, in the bits of a number. The lowest bit is this if the certificate must decide whether there is
+/// an impact; the next ones mark coefficients that are so small that they are dropped when they lead; the highest ones
+/// are unused.
 pub(super) const OPEN: u64 = 1;
 
 /// The lowest bits of this number plus a sum of small powers of two are that sum.
@@ -59,7 +59,7 @@ pub(super) struct Group {
     pub largest: f64,
     /// Bit by bit, the particles that a response has moved since their pairs were computed.
     moved: u32,
-    /// Whether a response has moved an edge in this pass: the next one would spoil what is computed of other particles.
+    /// Whether a response has moved an edge in this pass: another would spoil the results of other particles.
     has_moved_edges: bool,
 }
 
@@ -194,8 +194,8 @@ pub(super) fn compute_particles<S: Simd>(
     store(simd, overlap, approach, rows, largest)
 }
 
-/// Asks the certificate about pairs with edges, and stores everything; the rows of two lanes are `stride` apart. Gives
-/// the largest moduli so far.
+/// Applies the certificate to pairs with edges, and stores everything; the rows of two lanes are `stride` apart.
+/// Returns the largest moduli so far.
 #[inline(always)]
 fn store_edges<S: Simd>(
     simd: S,
@@ -207,7 +207,7 @@ fn store_edges<S: Simd>(
     let EdgePolynomials { distance, beyond_first, before_second, approach } = *pair;
     let ([o0, o1, o2, o3, o4], [a0, a1, a2, a3, a4, a5]) = (distance, approach);
     let ([f0, f1, f2], [s0, s1, s2]) = (beyond_first, before_second);
-    // Code that needs all of them comes before code with branches, across which few numbers can be kept at hand.
+    // Code that needs all of them comes before code with branches, across which few numbers stay in registers.
     let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
     let small = small(simd, &all);
     for lanes in &all {
@@ -221,7 +221,7 @@ fn store_edges<S: Simd>(
     largest
 }
 
-/// Asks the certificate about a parabola and a line, and stores everything.
+/// Applies the certificate to a parabola and a line, and stores everything.
 #[inline(always)]
 fn store<S: Simd>(
     simd: S,

@@ -15,7 +15,7 @@ pub(super) struct Lists {
     particles: [Vec<f64>; 5],
     /// The edges' coordinates: starts and displacements of their first and second ends, and radii.
     edges: [Vec<f64>; 9],
-    /// Whether these are filled in this pass; nobody needs them before a response has moved bodies.
+    /// Whether these are filled in this pass; they are needed only after a response has moved bodies.
     has_edges: bool,
     /// The squared lengths of half-planes' normals.
     pub squares: Vec<f64>,
@@ -164,7 +164,7 @@ fn plane<S: Simd>(simd: S, x: &[f64], y: &[f64], first: usize) -> Plane<Lanes<S>
     Plane { x: Lanes::load(simd, &x[first..]), y: Lanes::load(simd, &y[first..]) }
 }
 
-/// Fills what is behind the first `count` entries with the last of these.
+/// Fills the places behind the first `count` entries with the last entry.
 fn repeat_last(lists: &mut [Vec<f64>], count: usize) {
     for list in lists {
         if let [.., last] = list[..count] {
@@ -173,7 +173,7 @@ fn repeat_last(lists: &mut [Vec<f64>], count: usize) {
     }
 }
 
-/// Puts a vector into entry `index` of two lists with `count` entries, the last of which stands behind them, too.
+/// Puts a vector into entry `index` of two lists with `count` entries; the last entry is repeated behind them.
 fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
     for (list, value) in lists.iter_mut().zip([vector.x, vector.y]) {
         let end = if index + 1 == count { list.len() } else { index + 1 };

@@ -1,8 +1,8 @@
 //! A detection pass whose polynomials only have to be logged: several pairs of one kind at a time, in lanes.
 //!
-//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number; so
-//! polynomials, decisions and counts are those of [`super::pass`] bit for bit, however pairs are put together. Where
-//! inputs are so large that a NaN could arise, or are one, there are no blocks.
+//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number;
+//! polynomials, decisions and counts are therefore those of [`super::pass`] bit for bit, however pairs are put
+//! together. Where inputs are so large that a NaN could arise, or are one, there are no blocks.
 //!
 //! `lists` holds what lanes are loaded from, `group` computes blocks of pairs, `rows` goes through them in the order of
 //! the trace, `settle` decides about single ones and writes them.
@@ -29,14 +29,14 @@ pub(super) struct Setting<'a> {
     pub step: u32,
     /// Positions at the start of the step.
     pub q_start: &'a [f64],
-    /// Displacements within the step, as far as responses have left them.
+    /// Displacements within the step, after the responses so far.
     pub displacements: &'a [f64],
 }
 
-/// Goes through the pairs of passes; keeps its memory.
+/// Processes the pairs of passes; keeps its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Blocks {
-    /// Those that suit the scene, once it is known.
+    /// The instructions that suit the scene, once it is known.
     instructions: Option<Instructions>,
     /// Steps of the scene.
     steps: u32,
@@ -50,15 +50,15 @@ impl Blocks {
         Self { steps, ..Self::default() }
     }
 
-    /// Prepares a pass. False where pairs have to be computed one by one.
+    /// Prepares a pass. Returns false if pairs have to be computed one by one.
     pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
         self.group.clear();
         self.lists.prepare(setting)
     }
 
-    /// Takes over the displacements of these particles. False where the rest has to be computed one by one.
+    /// Takes over the displacements of these particles. Returns false if the rest has to be computed one by one.
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
-        // Fixed particles stay, and so does all that is computed with them.
+        // Fixed particles stay, and so do all results about them.
         moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
             RefreshedBody::Same => true,
             RefreshedBody::Moved { is_end } => {
@@ -69,7 +69,7 @@ impl Blocks {
         })
     }
 
-    /// Goes on to the next hit and past it; none is left where there is none. Polynomials are appended to `bytes`.
+    /// Advances to the next hit and past it; to the end if there is none. Polynomials are appended to `bytes`.
     ///
     /// # Errors
     /// [`StepError::RootSearch`]

@@ -1,4 +1,4 @@
-//! Goes through all pairs in the order of the trace, particle by particle.
+//! Processes all pairs in the order of the trace, particle by particle.
 use super::{
     Group, Lists, Setting,
     group::{BEHIND, EDGE_KNOWN, EDGE_ROW, OPEN, TWO_KNOWN, TWO_ROW, compute_particles},
@@ -77,7 +77,7 @@ impl Pairs<'_> {
         self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
     }
 
-    /// Decides about a particle and these edges, as far as it is no end of them.
+    /// Decides about a particle and those of these edges of which it is no end.
     #[inline(always)]
     fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;

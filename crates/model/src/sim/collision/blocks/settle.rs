@@ -15,13 +15,13 @@ use fosssim_num::{lanes::copy_little_endian, polynomial::Polynomial};
 
 crate::drops_leading!();
 
-/// Bytes of a pair with an edge, and of another one, where nothing is dropped.
+/// The bytes of a pair with an edge, and of another pair, if nothing is dropped.
 pub(super) const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
 pub(super) const TWO_BYTES: usize = 2 * 4 + 8 * 5;
 
-/// Where polynomials go, and how many have gone there.
+/// The place of polynomials, and the number of those that are there.
 pub(super) struct LoggedRows<'a> {
-    /// Room for all of them; none where nobody wants to know.
+    /// Room for all of them; empty if they are not wanted.
     pub room: &'a mut [u8],
     /// Bytes that are written.
     pub used: usize,
@@ -42,7 +42,7 @@ impl<'a> LoggedRows<'a> {
         Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
     }
 
-    /// Has a pair decided about. Whether that yields something, as [`LoggedRows::takes`] says.
+    /// Decides about a pair, and returns whether that yields something, as [`LoggedRows::takes`] does.
     #[inline(always)]
     pub fn asks(
         &mut self,
@@ -55,7 +55,7 @@ impl<'a> LoggedRows<'a> {
         self.takes(found, pair, place)
     }
 
-    /// Takes what was found of a pair. Whether this is a hit, behind which the place is then, or a search without end,
+    /// Takes the result of a pair. Returns whether it is a hit, after which the place is then, or an endless search,
     /// which is not logged.
     #[inline(always)]
     fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
@@ -70,8 +70,8 @@ impl<'a> LoggedRows<'a> {
         true
     }
 
-    /// Writes the polynomials of a pair with an edge without their small leading coefficients, which `small` tells in
-    /// bits.
+    /// Writes the polynomials of a pair with an edge without their small leading coefficients, whose bits are set in
+    /// `small`.
     #[inline(always)]
     pub fn write_edge(&mut self, row: &[f64; EDGE_ROW + BEHIND], small: u64) {
         let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<EDGE_BYTES>) else { return };
@@ -96,10 +96,11 @@ impl<'a> LoggedRows<'a> {
     }
 }
 
-/// Writes a polynomial whose coefficients stand in front: always as many as it could have, of which less may count.
+/// Writes a polynomial whose coefficients are at the front: always the greatest possible number, of which fewer may
+/// count.
 #[inline(always)]
 fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
-    // Small ones in a row, at most all coefficients.
+    // Small coefficients in a row, at most all of them.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
     let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
     let Some((size, places)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
@@ -111,7 +112,7 @@ fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64]
     *used += 4 + 8 * (LENGTH - dropped);
 }
 
-/// Asks the certificate about a pair with an edge, and the root finder where it knows no answer.
+/// Applies the certificate to a pair with an edge, and the root finder if the certificate has no answer.
 #[inline(never)]
 pub(super) fn decide_edge(
     setting: &Setting<'_>,

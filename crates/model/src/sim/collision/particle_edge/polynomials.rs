@@ -35,7 +35,7 @@ impl<N: Number> EdgeMotions<N> {
     }
 }
 
-/// The coefficients of particle-edge pairs before the removal of small leading ones, highest power first.
+/// The coefficients of particle-edge pairs before small leading coefficients are dropped, highest power first.
 #[derive(Debug, Clone, Copy)]
 pub struct EdgePolynomials<N> {
     /// "Closer than the radii to the line".
@@ -51,8 +51,8 @@ pub struct EdgePolynomials<N> {
 /// Returns the coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step,
 /// and whose radius and the edge's add up to `radii`. Letters are those of collisions.md 2.
 ///
-/// The t^3 coefficient of the last one is mathematically wrong (`g` where `h` belongs); it is the formula that every
-/// student was given.
+/// The t^3 coefficient of the last one is mathematically wrong (it has `g` instead of `h`); it is the formula that
+/// every student was given.
 #[inline(always)]
 pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, edges: &EdgeMotions<N>, radii: N) -> EdgePolynomials<N>
 where
@@ -61,8 +61,7 @@ where
     coefficients_and_right_cubic(x1, d1, edges, radii).0
 }
 
-/// Returns the [`coefficients`], and what the definition gives for the t^3 coefficient of the last polynomial
-/// (numerics.md 1.1).
+/// Returns the [`coefficients`], and the definition's t^3 coefficient of the last polynomial (numerics.md 1.1).
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
 pub fn coefficients_and_right_cubic<N: Number>(
@@ -98,7 +97,8 @@ where
     (EdgePolynomials { distance, beyond_first: [c, b, a], before_second, approach }, right_cubic)
 }
 
-/// Returns the coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right one of t^3.
+/// Returns the coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right coefficient
+/// of t^3.
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
 fn approach<N: Number>([a, b, c, d, e, f, g, h]: [N; 8], i: N, j: N) -> ([N; 6], N)
@@ -252,7 +252,7 @@ mod tests {
         }
     }
 
-    /// On an edge that only translates the polynomials are those of the exact definition.
+    /// Tests that on an edge that only translates the polynomials are those of the exact definition.
     #[test]
     fn a_translating_edge_gives_the_exact_polynomials() {
         let [x1, x2, x3] = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)].map(vector);

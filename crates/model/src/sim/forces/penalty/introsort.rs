@@ -1,8 +1,8 @@
-//! The order in which the C++ library's sort leaves entries whose keys are equal.
+//! The order in which the C++ library's sort leaves entries with equal keys.
 //!
-//! Introsort: quicksort around a median of three, heapsort where that goes too deep, and one insertion at the end. Up
-//! to [`THRESHOLD`] entries keep their order where keys are equal; beyond that they do not, and the original's sums
-//! depend on it.
+//! Introsort: quicksort around a median of three, heapsort if that recurses too deep, and one insertion at the end. Up
+//! to [`THRESHOLD`] entries keep their order if keys are equal; beyond that they do not, and the original's sums depend
+//! on it.
 
 /// Parts of at most this many entries are left to the insertion at the end.
 const THRESHOLD: usize = 16;
@@ -42,7 +42,7 @@ fn median([a, b, c]: [usize; 3], is_less: impl Fn(usize, usize) -> bool) -> usiz
     }
 }
 
-/// Brings what is below the first entry before what is above it; returns where the second part begins.
+/// Moves entries below the first entry before those above it; returns where the second part begins.
 fn partition<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool) -> usize {
     let pivot = list[0];
     let (mut first, mut last) = (1, list.len());

@@ -42,7 +42,7 @@ struct Law {
     stiffness: f64,
     /// `h`
     thickness: f64,
-    /// Whether it is that of Theme 2, Milestone 3 (simulation.md 3.1): bodies at the same place leave each other alone,
+    /// Whether it is that of Theme 2, Milestone 3 (simulation.md 3.1): bodies at the same place do not push each other,
     /// particles compare squares of lengths, and the direction from one to the other is normalized twice.
     is_contest: bool,
 }

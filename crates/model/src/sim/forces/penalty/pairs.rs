@@ -45,14 +45,14 @@ impl PenaltyPairs {
         self.sweep.as_ref().map(|sweep| sweep.order(order)).is_some()
     }
 
-    /// Goes on from this order, in a contest.
+    /// Continues from this order, in a contest.
     pub fn set_order(&mut self, order: &SweepOrder) {
         if let Some(sweep) = &mut self.sweep {
             sweep.set_order(order);
         }
     }
 
-    /// Hands all pairs to `hear`, in the order in which they are summed, that may be closer at positions `x` (2N) than
+    /// Calls `hear` for all pairs, in the order in which they are summed, that may be closer at positions `x` (2N) than
     /// their radii and the thickness. In large scenes few others are among them.
     pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair)) {
         let particles = self.radii.len();
@@ -78,7 +78,7 @@ impl PenaltyPairs {
                 others.for_each(|j| hear(pair(PairKind::ParticleParticle, i, j)));
                 edges.for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
             } else {
-                // Nearly all others are beyond reach, which is asked here with as few instructions as possible.
+                // Nearly all others are beyond reach, which is tested here with as few instructions as possible.
                 let (own, radius) = (at(x, i), self.radii[i]);
                 let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
                 for (j, (&other, other_radius)) in others.zip(places) {

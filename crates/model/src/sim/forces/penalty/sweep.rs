@@ -1,9 +1,9 @@
 //! The contest's search for near pairs, and the order in which it finds them (simulation.md 3.1).
 //!
-//! Bodies are boxes of their bare radii: what overlaps on x and on y is near. Where there are edges, unless there are
-//! less than one for a hundred particles, boxes have to overlap on x + y and x - y, too. The search goes through bodies
-//! as they begin on x. It goes on from the order of the search before, so that bodies which begin at the same place
-//! keep their order; the first order is that of the C++ library's sort.
+//! Bodies are boxes of their bare radii: boxes that overlap on x and on y are near. With edges, unless there are fewer
+//! than one for a hundred particles, boxes have to overlap on x + y and x - y, too. The search visits bodies in the
+//! order of their beginnings on x. It continues from the order of the search before, so that bodies which begin at the
+//! same place keep their order; the first order is that of the C++ library's sort.
 use super::introsort;
 use crate::scene::Scene;
 use fosssim_num::vector::{Vec2, at};
@@ -17,7 +17,7 @@ const BLOCK: usize = 8;
 
 /// The bodies in the order in which the search before has left them.
 ///
-/// A force at certain positions depends on it where bodies begin at the same place: it belongs to a state.
+/// A force at certain positions depends on it if bodies begin at the same place: it belongs to a state.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SweepOrder {
     particles: Vec<u32>,
@@ -64,7 +64,7 @@ impl Sweep {
         }
     }
 
-    /// Writes down the order of the last search; empty before the first one.
+    /// Returns the order of the last search; empty before the first one.
     pub fn order(&self, order: &mut SweepOrder) {
         for (list, boxes) in [(&mut order.particles, &self.particle_boxes), (&mut order.edges, &self.edge_boxes)] {
             list.clear();
@@ -72,7 +72,7 @@ impl Sweep {
         }
     }
 
-    /// Goes on from this order.
+    /// Continues from this order.
     pub fn set_order(&mut self, order: &SweepOrder) {
         for (list, boxes) in [(&order.particles, &mut self.particle_boxes), (&order.edges, &mut self.edge_boxes)] {
             boxes.clear();
@@ -103,7 +103,7 @@ impl Sweep {
         }));
     }
 
-    /// Hands all near pairs of particles to `hear`, the smaller number first.
+    /// Calls `hear` for all near pairs of particles, the smaller number first.
     pub fn visit_particles(&self, mut hear: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
         let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {
@@ -122,7 +122,7 @@ impl Sweep {
                 near.for_each(|other| hear_if_near(one, other));
                 continue;
             }
-            // Boxes of like sizes end one after the other, so the end of the near ones moves little.
+            // Boxes of similar sizes end one after the other, so the end of the near ones moves little.
             end = end.max(index + 1);
             while end < boxes.len() && !begins_behind(&boxes[end], one) {
                 end += 1;
@@ -148,7 +148,7 @@ impl Sweep {
         }
     }
 
-    /// Hands all particles with the edges near them to `hear`, apart from their own.
+    /// Calls `hear` for all particles with the edges near them, except their own.
     pub fn visit_edges(&self, mut hear: impl FnMut(usize, usize)) {
         for one in &self.particle_boxes {
             let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
@@ -163,7 +163,7 @@ impl Sweep {
 }
 
 /// Makes the boxes of `count` bodies, and sorts them as they begin on x: from the order that they have, if they have
-/// one. By insertion, which the original does then, no body passes one that begins nowhere.
+/// one. The original then sorts by insertion, so no body passes one that begins at NaN.
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 fn sort(
     boxes: &mut Vec<BodyExtent>,

@@ -30,7 +30,7 @@ impl PenaltyTerms {
         })
     }
 
-    /// Hands every pair that repels at positions `x` (2N) to `hear`, with the force on each of its particles.
+    /// Calls `hear` for every pair that repels at positions `x` (2N), with the force on each of its particles.
     pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair, &[(usize, Vec2)])) {
         let Self { bodies, penalty: Penalty { law, pairs }, gradient } = self;
         pairs.visit(x, |pair| {

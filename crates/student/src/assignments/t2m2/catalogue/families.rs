@@ -1,5 +1,5 @@
-//! The catalogue is closed under the assignment's symmetries: what can be done wrong with one kind of pair, one end,
-//! one place or one quantity is there for the others, or does not exist for a reason that stands here.
+//! Tests that the catalogue is closed under the assignment's symmetries: a mistake with one kind of pair, one end, one
+//! place or one quantity exists for the others, or a reason here says why not.
 use super::CATALOGUE;
 use crate::assignments::{
     all::find,
