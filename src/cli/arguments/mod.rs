@@ -17,7 +17,7 @@ use values::{TextOrJson, assignment, at_least_one, explaining, reader, rules};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-oracle", version, max_term_width = 100, after_help = EXIT_CODES)]
 pub(super) struct Arguments {
-    /// The use of colors; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
+    /// When to use colors; auto: on a terminal without NO_COLOR, and always with CLICOLOR_FORCE.
     #[arg(
         long,
         global = true,
@@ -55,7 +55,7 @@ TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asse
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
     Simulate(SimulateArguments),
-    /// Grades a trace by the original's rules and by fair ones, and shows what is wrong, and where.
+    /// Shows what is wrong in a trace, and where, by the original's rules and by fair ones.
     Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
     Explain(ExplainArguments),
