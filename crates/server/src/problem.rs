@@ -160,7 +160,11 @@ pub(crate) fn size(bytes: u64) -> String {
     match bytes {
         few @ ..1024 => format!("{few} B"),
         some @ ..1_048_576 => format!("{} KiB", (some + 512) / 1024),
-        many => format!("{} MiB", (many + 524_288) / 1_048_576),
+        many => match (many + 524_288) / 1_048_576 {
+            whole if whole % 1_048_576 == 0 => format!("{} TiB", whole / 1_048_576),
+            whole if whole % 1024 == 0 || whole > 10_240 => format!("{} GiB", (whole + 512) / 1024),
+            some => format!("{some} MiB"),
+        },
     }
 }
 

@@ -4,7 +4,11 @@ use crate::domain::{
     Member, Throttle,
     accounts::turns::{ArchiveTurn, Turns},
 };
-use crate::{db::Transaction, problem::Problem, values};
+use crate::{
+    db::Transaction,
+    problem::{self, Problem},
+    values,
+};
 use std::{
     collections::HashMap,
     sync::{Arc, Mutex, PoisonError},
@@ -20,9 +24,6 @@ const TURN: Duration = Duration::from_secs(30);
 
 /// The rejected archives that an account may send in a minute.
 const REFUSED: u32 = 30;
-
-/// A mebibyte.
-const MIB: u64 = 1 << 20;
 
 /// The limits, and the transfers that are under way.
 #[derive(Debug, Default)]
@@ -156,13 +157,14 @@ impl RoomShare {
     }
 
     fn describe(self, whose: &str) -> String {
-        let kept = format!("Uploads and reports kept of {whose}: {} MiB", self.bytes.div_ceil(MIB));
+        let kept = format!("Uploads and reports kept of {whose}: {}", problem::size(self.bytes));
+        let most = problem::size(self.most);
         match self.most {
             0 => kept + ".",
-            most if self.is_nearly_all() => {
-                format!("{kept} of {}. When all are taken nothing can be handed in: ask the administrator.", most / MIB)
+            _ if self.is_nearly_all() => {
+                format!("{kept} of {most}. When all are taken nothing can be handed in: ask the administrator.")
             }
-            most => format!("{kept} of {}.", most / MIB),
+            _ => format!("{kept} of {most}."),
         }
     }
 }
@@ -171,11 +173,6 @@ fn exceeds(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) ->
     if most == 0 || kept.saturating_add(size) <= most {
         return Ok(());
     }
-    let in_mib = |bytes: u64| bytes.div_ceil(MIB);
-    Err(Problem::quota(format!(
-        "{what} takes {} of {} MiB, and this upload has {} MiB",
-        in_mib(kept),
-        in_mib(most),
-        in_mib(size)
-    )))
+    let [kept, most, size] = [kept, most, size].map(problem::size);
+    Err(Problem::quota(format!("{what} takes {kept} of {most}, and this upload has {size}")))
 }

@@ -109,14 +109,14 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let before = stored(&server);
     // It is told before it is too late: to staff of the course always, to others from four fifths on.
     let words = |by: &Client| by.get("/c/physics").expect(200).text();
-    assert!(words(&ada).contains("kept of you: 5 MiB of 5. When all are taken"), "{}", words(&ada));
+    assert!(words(&ada).contains("kept of you: 4 MiB of 5 MiB. When all are taken"), "{}", words(&ada));
     assert!(!words(&eve).contains("kept of"), "{}", words(&eve));
-    assert!(words(&admin).contains("kept of this course: 5 MiB of 8."), "{}", words(&admin));
+    assert!(words(&admin).contains("kept of this course: 4 MiB of 8 MiB."), "{}", words(&admin));
     let metrics = server.visitor().get("/metrics").expect(200).text();
     assert!(metrics.contains("fosssim_kept_bytes{of=\"largest course\"} 4"), "{metrics}");
     let answer = ada.send("POST", SUBMISSIONS, &[], &large(2, 3)).expect(507).json();
     assert_eq!(answer["type"], "urn:fosssim:quota", "{answer}");
-    assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("5 of 5 MiB")), "{answer}");
+    assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("4 MiB of 5 MiB")), "{answer}");
     // By a form, whose size nobody knows before it came.
     let form = [
         b"--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"F\"\r\n\r\n",
