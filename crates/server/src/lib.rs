@@ -12,6 +12,7 @@ mod late;
 pub mod ledger;
 pub mod lti;
 pub mod net;
+pub mod oidc;
 pub mod problem;
 pub mod queue;
 pub mod retention;

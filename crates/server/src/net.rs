@@ -5,6 +5,7 @@ use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{io, net::SocketAddr, time::Duration};
 use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
+use ureq::Agent;
 
 /// The time that connections get when the server stops.
 const GRACE: Duration = Duration::from_secs(20);
@@ -28,4 +29,16 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
             Ok(())
         }
     }
+}
+
+/// Returns a client for requests to services whose addresses are configured: it follows no redirection.
+pub(crate) fn agent(over_http: bool, patience: Duration) -> Agent {
+    Agent::config_builder()
+        .http_status_as_error(false)
+        .max_redirects(0)
+        .https_only(!over_http)
+        .timeout_global(Some(patience))
+        .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
+        .build()
+        .new_agent()
 }

@@ -52,18 +52,10 @@ problems! {
     unknown_secret(what: &str, remedy: &str): 401, "unknown-secret", "Not signed in",
         format!("this {what} is unknown, used, too old or revoked"),
         remedy;
-    /// No account has this login and this password.
-    wrong_password(): 401, "wrong-password", "Not signed in",
-        "there is no account of this login with this password",
-        "try again, or ask the course's staff for a link that signs you in";
     /// Known, and not allowed.
     not_allowed(detail: impl Into<String>): 403, "not-allowed", "Not allowed",
         detail,
         "ask a person whose role allows it";
-    /// The server is not started with passwords.
-    no_passwords(): 403, "not-allowed", "Not allowed",
-        "this server accepts no passwords",
-        "sign in by a link, a token, or from your learning platform";
     /// Known, but it is not certain that it is the person.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
         detail,
@@ -76,6 +68,10 @@ problems! {
     refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
+    /// A sign-in at a provider is not accepted.
+    refused_sign_in(detail: impl Into<String>): 403, "sign-in-refused", "This sign-in is not possible",
+        detail,
+        "sign in again; if it happens again, tell the server's administrator";
     /// A learning platform did not fulfill a request.
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,

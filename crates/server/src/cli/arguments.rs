@@ -110,9 +110,8 @@ pub(super) struct ServiceArguments {
     /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
-    /// Let people sign in with passwords, too.
-    #[arg(long)]
-    pub(super) passwords: bool,
+    #[command(flatten)]
+    pub(super) provider: ProviderArguments,
     /// The days for which uploads and reports are kept; 0 is forever. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
@@ -125,6 +124,28 @@ pub(super) struct ServiceArguments {
     pub(super) example: bool,
     #[command(flatten)]
     pub(super) work: WorkloadArguments,
+}
+
+/// The OpenID Connect provider of an organization.
+#[derive(Debug, Args)]
+pub(super) struct ProviderArguments {
+    /// The issuer of an OpenID Connect provider at which people sign in, such as https://login.example.org. Its client
+    /// secret is in --oidc-secret-file, or in the variable FOSSSIM_OIDC_SECRET.
+    #[arg(long, value_name = "URL", env = "FOSSSIM_OIDC_ISSUER", requires = "oidc_client")]
+    pub(super) oidc_issuer: Option<String>,
+    /// The name of this server at the provider: the client ID.
+    #[arg(long, value_name = "ID", env = "FOSSSIM_OIDC_CLIENT", requires = "oidc_issuer")]
+    pub(super) oidc_client: Option<String>,
+    /// The file with the client secret.
+    #[arg(long, value_name = "FILE", env = "FOSSSIM_OIDC_SECRET_FILE", requires = "oidc_issuer")]
+    pub(super) oidc_secret_file: Option<PathBuf>,
+    /// The provider's name on the sign-in page. Its host by default.
+    #[arg(long, value_name = "NAME", env = "FOSSSIM_OIDC_LABEL", requires = "oidc_issuer")]
+    pub(super) oidc_label: Option<String>,
+    /// Only people with a confirmed mail address in this domain sign in. An account that staff made is theirs if its
+    /// login is the part before the @.
+    #[arg(long, value_name = "DOMAIN", env = "FOSSSIM_OIDC_DOMAIN", requires = "oidc_issuer")]
+    pub(super) oidc_domain: Option<String>,
 }
 
 /// Returns the scheme and host of an address that people type.

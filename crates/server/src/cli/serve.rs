@@ -1,17 +1,18 @@
 //! `serve`: the server, with workers of its own.
 use super::{
-    arguments::{AdminLinkArguments, ServiceArguments},
+    arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments},
     folders::ServiceFolders,
     heartbeat, until_signalled,
     worker::{LocalWorkers, grader, policy},
 };
 use crate::{
     db::{self, Address, Database},
-    domain::{App, Options, Passwords, Suites, TransferLimits},
+    domain::{App, Options, Suites, TransferLimits},
     instruments::Instruments,
     ledger,
     lti::{self, Lti},
     net,
+    oidc::Provider,
     queue::{Notifier, QueuePolicy},
     retention,
     store::Store,
@@ -54,6 +55,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
     let policy = policy(&arguments.work);
     let patience = Duration::from_secs(arguments.patience);
+    let provider = provider(&arguments.provider)?;
     let lti = Arc::new(Lti::new(arguments.lti_over_http));
     let options = Options {
         suites: suites(arguments.work.grader.as_deref()).await,
@@ -71,7 +73,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
             arguments.keep_of_course * MIB,
             arguments.keep_in_all * MIB,
         ),
-        passwords: arguments.passwords.then(Passwords::default),
+        provider,
         lti: lti.clone(),
     };
     let app = App::new(database.clone(), store.clone(), notifier.clone(), policy, Instruments::new()?, options);
@@ -110,6 +112,18 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     database.close().await;
     tracing::info!("stopped");
     Ok(())
+}
+
+/// Returns the provider at which people sign in. Its secret is no option, which lists of processes show.
+fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
+    let ProviderArguments { oidc_issuer, oidc_client, oidc_secret_file, oidc_label, oidc_domain } = arguments;
+    let (Some(issuer), Some(client)) = (oidc_issuer, oidc_client) else { return Ok(None) };
+    let secret = match oidc_secret_file {
+        Some(file) => std::fs::read_to_string(file).with_context(|| format!("cannot read {}", file.display()))?,
+        None => std::env::var("FOSSSIM_OIDC_SECRET").context("--oidc-issuer needs --oidc-secret-file")?,
+    };
+    let (client, secret) = (client.clone(), secret.trim().to_owned());
+    Ok(Some(Provider::new(issuer.clone(), client, secret, oidc_label.clone(), oidc_domain.clone())?))
 }
 
 /// Prints to standard output, for people and scripts, where the server listens and how to sign in. The log is on

@@ -14,7 +14,6 @@ mod view;
 
 pub use accounts::identity::{Link, NewSecret, NewToken, TokenInfo};
 pub use accounts::limits::{Transfer, TransferLimits};
-pub use accounts::password::Passwords;
 pub use assignments::settings::Settings;
 pub(crate) use assignments::settings::{moment, moment_schema};
 pub use assignments::suites::{Suites, is_file_name};
@@ -42,6 +41,7 @@ use crate::{
     db::Database,
     instruments::Instruments,
     lti::Lti,
+    oidc::Provider,
     queue::{Notifier, QueuePolicy},
     storage::Storage,
     store::Store,
@@ -99,8 +99,8 @@ pub struct Options {
     pub requests_per_minute: u32,
     /// Transfers at one time, and bytes that are kept.
     pub limits: TransferLimits,
-    /// The parts that signing in with passwords needs; `None` if that is not allowed.
-    pub passwords: Option<Passwords>,
+    /// The provider by which people sign in.
+    pub provider: Option<Provider>,
     /// Speaks with learning platforms.
     pub lti: Arc<Lti>,
 }

@@ -2,7 +2,7 @@
 use super::{Platform, keys};
 use crate::{
     db::{Database, DbError},
-    secret,
+    net, secret,
 };
 use serde::{Deserialize, de::DeserializeOwned};
 use serde_json::json;
@@ -133,15 +133,7 @@ struct Token {
 
 impl Client {
     pub(super) fn new(over_http: bool) -> Self {
-        let agent = Agent::config_builder()
-            .http_status_as_error(false)
-            .max_redirects(0)
-            .https_only(!over_http)
-            .timeout_global(Some(PATIENCE))
-            .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
-            .build()
-            .new_agent();
-        Self { agent, over_http, tokens: Mutex::default() }
+        Self { agent: net::agent(over_http, PATIENCE), over_http, tokens: Mutex::default() }
     }
 
     /// Reads a file that a platform publishes.

@@ -34,7 +34,7 @@ const MOST: i64 = (1 << 53) - 1;
     servers((url = "/", description = "This server")),
     components(schemas(Problem, OutputFile, Slug, FileName, Digest)),
     tags(
-        (name = "accounts", description = "The signed-in person: account, password, tokens"),
+        (name = "accounts", description = "The signed-in person: account, tokens"),
         (name = "courses", description = "Courses and their members"),
         (name = "assignments", description = "Assignments, and a class's results"),
         (name = "submissions", description = "Submissions and their grades"),

@@ -18,11 +18,14 @@ const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; i
 /// sign-in of its own.
 const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
 
+/// The page that connects an account with a provider: another site could have signed this browser in there before.
+const CONNECTS: &str = "/account/provider";
+
 /// Rejects what another site made a browser send. Another site can't send a token in a header, so that requests with a
 /// token pass. All others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`,
 /// or `Origin` from browsers without it.
 pub(super) async fn same_site(State(app): State<App>, request: Request, next: Next) -> Response {
-    if is_harmless(request.method())
+    if (is_harmless(request.method()) && request.uri().path() != CONNECTS)
         || FROM_PLATFORMS.contains(&request.uri().path())
         || who::secrets(request.headers(), app.is_secure()).bearer.is_some()
         || is_own(request.headers(), &app)

@@ -21,8 +21,7 @@ use utoipa_axum::router::OpenApiRouter;
 /// The largest body of a request that is no upload.
 const BODY: usize = 1 << 20;
 
-/// The limit before sign-in: a password, a token, or a learning platform's message. Thousands may be sent at the same
-/// time.
+/// The limit before sign-in: a token, or a learning platform's message. Thousands may be sent at the same time.
 const BODY_OF_NOBODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {

@@ -37,6 +37,11 @@ pub(super) fn browser_cookie(secure: bool) -> &'static str {
     if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
 }
 
+/// Returns the cookie of a browser while it signs in at a provider.
+pub(super) fn provider_cookie(secure: bool) -> &'static str {
+    if secure { "__Host-fosssim-provider" } else { "fosssim-provider" }
+}
+
 /// Returns the secrets in a request's headers.
 pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
     let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
@@ -50,7 +55,7 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
         pairs.find(|(name, _)| *name == wanted).map(|(_, value)| value.to_owned())
     };
     let (session, browser) = (cookie(cookie_name(secure)), cookie(browser_cookie(secure)));
-    Secrets { bearer, session, browser, address: None }
+    Secrets { bearer, session, browser, provider: cookie(provider_cookie(secure)), address: None }
 }
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {

@@ -20,7 +20,7 @@ const SESSIONS: i64 = 50;
 /// The time for which a sign-in link is valid.
 const LINK: i64 = 7 * 24 * 3600 * 1000;
 
-/// The time after its beginning in which a session may create further ways to sign in: tokens, a first password.
+/// The time after its beginning in which a session may create further ways to sign in: tokens, a provider.
 const RECENT: i64 = 12 * 3600 * 1000;
 
 /// The time after which a session's last use is noted again.
@@ -87,7 +87,7 @@ pub struct Link {
 /// The way in which a person signed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::domain) enum Way {
-    /// By their password, a learning platform, or a link that the server or an administrator made.
+    /// By a provider, a learning platform, or a link that the server or an administrator made.
     Own,
     /// By a link that a course's staff made, who may have used it themselves.
     Vouched,
@@ -225,9 +225,7 @@ pub(in crate::domain) async fn use_link(
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
-    // A person who needs a link has forgotten the password: the next one is set without it.
-    let statement = "UPDATE account SET password = NULL WHERE id = ? AND disabled_at IS NULL RETURNING id";
-    let able = transaction.row(statement, values![account]).await?;
+    let able = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
     Ok(able.map(|_| (account, way)))
 }
 
@@ -239,8 +237,9 @@ pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, accou
 /// Ends every way into an account: it may do more from now on, or nothing at all.
 pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
-    transaction.execute("UPDATE account SET password = NULL, managed_by = NULL WHERE id = ?", values![account]).await?;
+    transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
+    transaction.execute("DELETE FROM platform_account WHERE account = ? AND vouched = 1", values![account]).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
     transaction.execute(statement, values![account]).await.map(drop)
 }

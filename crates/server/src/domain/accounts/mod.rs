@@ -2,6 +2,8 @@
 
 pub(super) mod identity;
 pub(super) mod limits;
-pub(super) mod password;
+pub(super) mod newcomer;
+pub(super) mod pending;
+pub(super) mod provider;
 pub(super) mod throttle;
 pub(super) mod turns;

@@ -202,7 +202,7 @@ impl Staff {
     }
 
     /// Returns a new link that signs a student in once. Staff makes it only for accounts that belong to this course
-    /// alone: made here, in no other course, without a password or a platform of their own. A person who signs in as
+    /// alone: made here, in no other course, without a provider or a platform of their own. A person who signs in as
     /// another could do all that this other person may do.
     ///
     /// # Errors
@@ -216,8 +216,8 @@ impl Staff {
         let Some(row) = row else { return Err(Problem::not_found("member")) };
         let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
         if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
-            let detail = "this account is the person's own: it is more than a student of this course, or has a \
-                password";
+            let detail = "this account is the person's own: it is more than a student of this course, or signs in \
+                at a provider";
             return Err(Problem::not_allowed(detail));
         }
         let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;

@@ -199,7 +199,7 @@ impl Admin {
         ];
         run(&mut transaction, &rest, account).await?;
         let nobody = format!("removed-{account}");
-        let statement = "UPDATE account SET login = ?, name = 'a removed person', password = NULL, is_admin = 0,
+        let statement = "UPDATE account SET login = ?, name = 'a removed person', is_admin = 0,
             managed_by = NULL, disabled_at = {now} WHERE id = ?";
         transaction.execute(statement, values![&nobody, account]).await?;
         // The log has logins in its sentences, too.

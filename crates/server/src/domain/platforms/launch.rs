@@ -2,31 +2,24 @@
 //! and signs the person in with their account here, in the course that belongs to the platform's.
 use crate::domain::{
     App, NewSecret, Visitor,
-    accounts::identity::{self, Way},
-    accounts::throttle,
+    accounts::{
+        identity::{self, Way},
+        newcomer::Newcomer,
+        pending::{BegunSignIn, UNKNOWN},
+    },
     view::{self, Entry},
 };
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
     lti::{Arrival, LtiPerson, LtiRole, Message, Platform, Rejection, score},
     problem::{Problem, ensure},
-    secret::{hex, random_hex},
     values,
 };
-use base64::{Engine, prelude::BASE64_URL_SAFE_NO_PAD as URL_SAFE_NO_PAD};
-use ring::hmac;
 use serde::Deserialize;
-use std::time::Instant;
 use url::Url;
-
-/// The longest time that a sign-in may take, in milliseconds.
-const LOGIN: i64 = 10 * 60 * 1000;
 
 /// The time in which staff must choose.
 const CHOICE: i64 = 3600 * 1000;
-
-/// Sign-ins from one platform that an address may begin in a minute: a lecture hall may be one address.
-const LOGINS: u32 = 3000;
 
 /// The message of a platform about a person who wants to sign in (LTI 4.1, SEC 5.1.1.1).
 #[derive(Debug, Clone, Deserialize)]
@@ -104,28 +97,14 @@ impl Visitor {
         }
     }
 
-    /// Begins a sign-in, and returns the address to which the browser is sent. The data for the answer are signed and
-    /// not stored: any number of sign-ins may begin.
+    /// Begins a sign-in, and returns the address to which the browser is sent.
     ///
     /// # Errors
     /// When there are too many, or the database does not answer.
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
-        let bucket = throttle::bucket(self.secrets.address, &platform.name);
-        if !self.app.0.throttle.pass(bucket, LOGINS, Instant::now()) {
-            return Err(Problem::too_many("too many people sign in from your address at this moment"));
-        }
-        // One word for several windows of a browser.
-        let is_word = |word: &String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
-        let known = self.secrets.browser.clone().filter(is_word);
-        let browser = known.unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
-        let key = self.app.signing_key().await?;
-        let mut transaction = self.app.0.database.read().await?;
-        let now = transaction.one("SELECT {now} AS now", values![]).await?.int("now")?;
-        drop(transaction);
-        let state =
-            PendingLogin { platform: platform.id, expires_at: now + LOGIN, browser: identity::digest(&browser) };
-        let state = state.signed(&key);
-        let nonce = nonce(&key, &state);
+        let browser = (&self.secrets, self.secrets.browser.as_ref());
+        let BegunSignIn { state, browser } = self.app.begin_sign_in(&platform.id.to_string(), browser, (0, "")).await?;
+        let nonce = self.app.word_of("nonce", &state).await?;
         let settings = &platform.settings;
         let mut address = Url::parse(&settings.login_url).map_err(|_| Problem::fault())?;
         address
@@ -150,93 +129,21 @@ impl Visitor {
     /// # Errors
     /// When the answer does not belong to such a sign-in or platform, or this person may not sign in by it.
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
-        let key = self.app.signing_key().await?;
-        let (login, platform) = self.login(&key, state).await?;
-        let nonce = identity::digest(&nonce(&key, state));
+        let pending = self.app.pending_sign_in(state, self.secrets.browser.as_ref(), Problem::refused_launch).await?;
+        let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
+        let number: i64 = pending.at.parse().unwrap_or_default();
+        let platform = self.app.0.database.read().await?.find(statement, values![number]).await?;
+        let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN))?;
+        let nonce = identity::digest(&self.app.word_of("nonce", state).await?);
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
             return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
         };
         let mut transaction = self.app.0.database.begin().await?;
-        let expired = "DELETE FROM platform_login
-            WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
-        transaction.execute(expired, values![]).await?;
-        let statement = "INSERT INTO platform_login (state, expires_at) VALUES (?, ?) ON CONFLICT (state) DO NOTHING";
-        let used = transaction.execute(statement, values![identity::digest(state), login.expires_at]).await?;
-        ensure(used > 0, unknown_login())?;
+        ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN))?;
         let launched = arrive(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
-    }
-
-    /// Returns the sign-in that this browser began, and its platform.
-    async fn login(&self, key: &hmac::Key, state: &str) -> Result<(PendingLogin, Platform), Problem> {
-        let login = PendingLogin::read(key, state).ok_or_else(unknown_login)?;
-        let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT id, name, settings FROM platform
-            WHERE id = ? AND disabled_at IS NULL AND CAST(? AS {int}) > {now}
-               AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
-        let values = values![login.platform, login.expires_at, identity::digest(state)];
-        let platform = transaction.find(statement, values).await?.ok_or_else(unknown_login)?;
-        let Some(browser) = &self.secrets.browser else {
-            return Err(Problem::refused_launch("your browser did not send the cookie of this sign-in"));
-        };
-        // The sign-in began in another browser: its owner wants to sign this browser in as somebody else.
-        if login.browser != identity::digest(browser) {
-            return Err(Problem::refused_launch("this sign-in was begun in another browser"));
-        }
-        Ok((login, platform))
-    }
-}
-
-fn unknown_login() -> Problem {
-    Problem::refused_launch("this sign-in is unknown, used or too old")
-}
-
-/// A sign-in that a platform must confirm: once, in the same browser, and soon.
-struct PendingLogin {
-    platform: i64,
-    expires_at: i64,
-    /// The digest of the browser's word.
-    browser: String,
-}
-
-impl PendingLogin {
-    /// Returns the value as the platform sends it back, signed against forgery.
-    fn signed(&self, key: &hmac::Key) -> String {
-        let Self { platform, expires_at, browser } = self;
-        let words = format!("{platform}.{expires_at}.{browser}.{}", random_hex());
-        format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(key, words.as_bytes())))
-    }
-
-    fn read(key: &hmac::Key, state: &str) -> Option<Self> {
-        let (words, tag) = state.rsplit_once('.')?;
-        hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
-        let mut words = words.split('.');
-        let (platform, expires_at) = (words.next()?.parse().ok()?, words.next()?.parse().ok()?);
-        Some(Self { platform, expires_at, browser: words.next()?.to_owned() })
-    }
-}
-
-/// Returns the word by which the platform's answer to a sign-in is known.
-fn nonce(key: &hmac::Key, state: &str) -> String {
-    hex(hmac::sign(key, format!("nonce {state}").as_bytes()).as_ref())
-}
-
-impl App {
-    /// Returns the key by which the service recognizes what it signed: the same for all servers of a database.
-    async fn signing_key(&self) -> Result<hmac::Key, Problem> {
-        let found = self.0.signing_key.get_or_try_init(async || {
-            let mut transaction = self.0.database.begin().await?;
-            let statement =
-                "INSERT INTO server_secret (name, value) VALUES ('signing', ?) ON CONFLICT (name) DO NOTHING";
-            transaction.execute(statement, values![NewSecret::new("").reveal()]).await?;
-            let statement = "SELECT value FROM server_secret WHERE name = 'signing'";
-            let value = transaction.one(statement, values![]).await?.text("value")?;
-            transaction.commit().await?;
-            Ok::<_, DbError>(value)
-        });
-        Ok(hmac::Key::new(hmac::HMAC_SHA256, found.await?.as_bytes()))
     }
 }
 
@@ -381,60 +288,19 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     Ok(account)
 }
 
-/// Finds the account of a person, or makes it; its name is the platform's. It never takes an existing account of the
-/// same name or address: people choose these for themselves.
+/// Finds the account of a person, or makes it; its name is the platform's.
 pub(in crate::domain) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,
     person: &LtiPerson,
 ) -> Result<i64, DbError> {
-    let name = person.name.as_deref().map(tidy).filter(|name| !name.is_empty());
-    let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
-    let known = transaction.row(statement, values![&platform.settings.issuer, &person.subject]).await?;
-    if let Some(row) = known {
-        let account = row.int("account")?;
-        if let Some(name) = name {
-            let statement = "UPDATE account SET name = ? WHERE id = ? AND name <> ?";
-            transaction.execute(statement, values![&name, account, &name]).await?;
-        }
-        return Ok(account);
-    }
-    let mailbox = person.email.as_deref().and_then(|email| email.split('@').next());
-    let base = login_of(mailbox.or(name.as_deref()).unwrap_or_default());
-    for number in 1.. {
-        let login = match number {
-            1 => base.clone(),
-            2..=9 => format!("{base}-{number}"),
-            _ => format!("{base}-{}", &crate::secret::random_hex()[..8]),
-        };
-        let statement = "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
-            ON CONFLICT (login) DO NOTHING RETURNING id";
-        let made = transaction.row(statement, values![&login, name.as_ref().unwrap_or(&login)]).await?;
-        let Some(made) = made else { continue };
-        let account = made.int("id")?;
-        let statement = "INSERT INTO platform_account (issuer, subject, account, created_at) VALUES (?, ?, ?, {now})";
-        transaction.execute(statement, values![&platform.settings.issuer, &person.subject, account]).await?;
-        return Ok(account);
-    }
-    Err(DbError::Other("no login is free".to_owned()))
-}
-
-/// Returns a name as this service shows names.
-fn tidy(name: &str) -> String {
-    let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
-    plain.trim().chars().take(200).collect::<String>().trim().to_owned()
-}
-
-/// Makes a login from a person's name, whatever it holds.
-fn login_of(word: &str) -> String {
-    let plain = |c: char| match c.to_ascii_lowercase() {
-        c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
-        c if c.is_whitespace() => Some('.'),
-        _ => None,
+    let newcomer = Newcomer {
+        issuer: &platform.settings.issuer,
+        subject: &person.subject,
+        name: person.name.as_deref(),
+        nickname: person.email.as_deref(),
     };
-    let login: String = word.chars().filter_map(plain).take(40).collect();
-    let login = login.trim_matches(['-', '.', '_']);
-    if login.is_empty() { "user".to_owned() } else { login.to_owned() }
+    newcomer.find_or_make(transaction).await
 }
 
 /// Makes a person a member on a platform's word, or changes their role; roles that staff set here stay.
@@ -489,25 +355,4 @@ pub(in crate::domain) async fn pending(
     let row = row.ok_or_else(|| Problem::not_found("choice"))?;
     let arrival = serde_json::from_str(&row.text("arrival")?).map_err(|_| Problem::fault())?;
     Ok(PendingLaunch { platform: Platform::from_row(&row)?, arrival })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn logins_are_made_of_what_people_are_called() {
-        for (word, login) in [
-            ("Ada.Lovelace", "ada.lovelace"),
-            ("Ada Lovelace", "ada.lovelace"),
-            ("-x-", "x"),
-            ("\u{5d0}\u{5d3}\u{5d4}", "user"),
-            ("a'; DROP TABLE", "a.drop.table"),
-            ("", "user"),
-        ] {
-            assert_eq!(login_of(word), login, "{word}");
-            assert!(identity::check_slug("a login", &login_of(word)).is_ok());
-        }
-        assert_eq!(tidy(" A\nB\u{0} "), "A B");
-    }
 }

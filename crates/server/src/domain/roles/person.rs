@@ -10,7 +10,6 @@ use crate::{
     values,
 };
 use serde::Serialize;
-use std::net::IpAddr;
 use utoipa::ToSchema;
 
 /// A course, and the person's role in it.
@@ -28,7 +27,6 @@ pub struct Person {
     pub(crate) account: Account,
     /// The browser's session; `None` for a token.
     pub(in crate::domain) session: Option<SessionState>,
-    pub(in crate::domain) address: Option<IpAddr>,
     pub(crate) app: App,
 }
 

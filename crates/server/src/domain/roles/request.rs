@@ -51,7 +51,7 @@ impl App {
     /// When the request is not signed in, or there are too many.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
         let (account, session) = self.account(secrets).await?;
-        Ok(Person { account, session, address: secrets.address, app: self.clone() })
+        Ok(Person { account, session, app: self.clone() })
     }
 
     /// Returns a worker by its token; the worker chooses its own name.

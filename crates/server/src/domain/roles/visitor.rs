@@ -16,6 +16,8 @@ pub struct Secrets {
     pub session: Option<String>,
     /// The secret of a browser that comes from a learning platform.
     pub browser: Option<String>,
+    /// The secret of a browser that comes from a provider.
+    pub provider: Option<String>,
     /// The address from which the request comes.
     pub address: Option<IpAddr>,
 }

@@ -25,18 +25,6 @@ pub(in crate::web) struct WorkerTokenName {
     pub(in crate::web) name: String,
 }
 
-/// A new password.
-#[derive(Deserialize, ToSchema)]
-#[serde(deny_unknown_fields)]
-pub(in crate::web) struct PasswordWish {
-    /// The present password, if there is one.
-    #[serde(default)]
-    pub(in crate::web) old: String,
-    /// 10 to 200 characters, and not the login.
-    #[schema(min_length = 10, max_length = 200, pattern = r"^[^\x00-\x1f\x7f-\x9f]+$")]
-    pub(in crate::web) new: String,
-}
-
 /// The new state of an account.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -52,14 +40,6 @@ pub(super) struct AccountWish {
     responses((status = 200, body = Account)))]
 pub(super) async fn me(person: Person) -> Json<Account> {
     Json(person.account.clone())
-}
-
-/// Sets one's own password, where the server takes passwords. All sessions end.
-#[utoipa::path(put, path = "/api/v1/password", tag = "accounts", security(("session" = [])),
-    request_body = PasswordWish, responses((status = 204, description = "Set")))]
-pub(super) async fn set_password(person: Person, Body(wish): Body<PasswordWish>) -> Result<StatusCode, Problem> {
-    person.set_password(&wish.old, &wish.new).await?;
-    Ok(StatusCode::NO_CONTENT)
 }
 
 /// Makes a token for oneself.

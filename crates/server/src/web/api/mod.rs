@@ -44,7 +44,7 @@ mod regrades;
 mod submissions;
 mod workers;
 
-pub(super) use accounts::{PasswordWish, TokenName, WorkerTokenName};
+pub(super) use accounts::{TokenName, WorkerTokenName};
 pub(super) use assignments::{Revision, receive_suite};
 pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
@@ -64,7 +64,7 @@ macro_rules! operations {
 
 operations! {
     operations: health ready metrics openapi;
-    accounts: me set_password tokens new_token revoke_token accounts set_account disable_account remove_person
+    accounts: me tokens new_token revoke_token accounts set_account disable_account remove_person
         worker_tokens new_worker_token revoke_worker_token queue audit;
     courses: courses new_course remove_course members import set_member remove_member member_link audit;
     assignments: assignments assignment set_assignment remove_assignment set_suite publish withhold standings export

@@ -1,7 +1,7 @@
 //! One's courses and tokens.
 use super::{
     super::{
-        api::{PasswordWish, TokenName},
+        api::TokenName,
         input::{AddressParts, Fields},
     },
     Page, PageFrame, see, show, text,
@@ -26,6 +26,7 @@ struct Home {
 struct AccountPage<'a> {
     frame: PageFrame,
     person: &'a Person,
+    is_connected: bool,
     tokens: Vec<TokenInfo>,
     new: Option<String>,
 }
@@ -37,7 +38,8 @@ pub(super) async fn home(person: Person) -> Page {
 
 async fn page(person: &Person, new: Option<String>) -> Page {
     let frame = PageFrame::for_account(&person.account).then("/account".to_owned(), "Account");
-    show(&AccountPage { frame, person, tokens: person.tokens().await?, new })
+    let (is_connected, tokens) = (person.is_connected().await?, person.tokens().await?);
+    show(&AccountPage { frame, person, is_connected, tokens, new })
 }
 
 pub(super) async fn account(person: Person) -> Page {
@@ -51,7 +53,5 @@ pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -
 }
 
 deeds! {
-    /// Every session of this person must sign in again, by the new password.
-    set_password(person: Person, form: PasswordWish): person.set_password(&form.old, &form.new) => "/sign-in";
     revoke_token(person: Person, { id }): person.revoke_token(id) => "/account";
 }

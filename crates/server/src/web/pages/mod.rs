@@ -23,6 +23,7 @@ mod checker;
 mod course;
 mod grades;
 mod platform;
+mod provider;
 mod removal;
 mod report;
 mod scenes;
@@ -65,12 +66,14 @@ pages! {
     get "/check" => checker::page,
     get "/sign-in" => sign_in::page,
     post "/sign-in" => sign_in::by_token,
-    post "/sign-in/password" => sign_in::by_password,
+    get "/sign-in/provider" => provider::begin,
+    get "/sign-in/provider/answer" => provider::answer,
     get "/welcome/{secret}" => sign_in::welcome,
     post "/welcome/{secret}" => sign_in::by_link,
     post "/sign-out" => sign_in::sign_out,
     get "/account" => account::account,
-    post "/account/password" => account::set_password,
+    get "/account/provider" => provider::connect,
+    post "/account/provider/remove" => provider::disconnect,
     post "/account/tokens" => account::new_token,
     post "/account/tokens/{id}/revoke" => account::revoke_token,
     get "/admin" => administration::page,

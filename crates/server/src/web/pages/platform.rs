@@ -147,11 +147,9 @@ pub(super) async fn login(
 
 pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> Result<Response, Problem> {
     let (Some(state), Some(token)) = (&answer.state, &answer.id_token) else {
-        let said = [answer.error, answer.error_description].into_iter().flatten().collect::<Vec<_>>().join(": ");
-        let said: String = said.chars().filter(|c| !c.is_control()).take(300).collect();
-        return Err(match said.is_empty() {
-            true => Problem::invalid("state and id_token are missing"),
-            false => Problem::refused_launch(format!("the platform says: {said}")),
+        return Err(match sign_in::fault_of([answer.error, answer.error_description]) {
+            None => Problem::invalid("state and id_token are missing"),
+            Some(fault) => Problem::refused_launch(format!("the platform says: {fault}")),
         });
     };
     let launched = visitor.launch(state, token).await?;

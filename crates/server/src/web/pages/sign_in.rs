@@ -16,12 +16,16 @@ use axum::{
     response::{IntoResponse, Response},
 };
 use serde::Deserialize;
+use url::form_urlencoded::byte_serialize;
 
 #[derive(Template)]
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: PageFrame,
-    takes_passwords: bool,
+    /// The provider's name, and where a sign-in there begins.
+    provider: Option<(String, String)>,
+    /// Why the provider signs nobody in now.
+    fault: String,
     /// The page to go on to.
     to: String,
 }
@@ -40,24 +44,16 @@ pub(super) struct Token {
     to: String,
 }
 
-#[derive(Deserialize)]
-pub(super) struct Password {
-    login: String,
-    password: String,
-    #[serde(default)]
-    to: String,
-}
-
 /// The page that a person requested before signing in.
 #[derive(Deserialize)]
 pub(super) struct NextPage {
     #[serde(default)]
-    to: String,
+    pub(super) to: String,
 }
 
 /// Returns a page of this server; the first one where the words name none. Browsers take `//` and `/\` for another
 /// host.
-fn local(to: &str) -> &str {
+pub(super) fn local(to: &str) -> &str {
     let is_local =
         to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
     if is_local { to } else { "/" }
@@ -68,6 +64,13 @@ pub(super) fn enter(app: &App, session: &NewSecret, to: &str) -> Response {
     with_cookie(&session_cookie(app, session.reveal(), SESSION), to)
 }
 
+/// Returns the fault that another service names in its answer to a sign-in, as one short line.
+pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
+    let fault = words.into_iter().flatten().collect::<Vec<_>>().join(": ");
+    let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
+    Some(fault).filter(|fault| !fault.is_empty())
+}
+
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     let mut response = see(to).into_response();
     if let Ok(value) = HeaderValue::from_str(cookie) {
@@ -76,13 +79,16 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-pub(super) async fn page(visitor: Visitor, QueryInput(NextPage { to }): QueryInput<NextPage>) -> Page {
-    show(&SignIn { frame: PageFrame::default(), takes_passwords: visitor.app.takes_passwords(), to })
+/// Shows the ways in.
+pub(super) fn ways(visitor: &Visitor, to: String, fault: String) -> Page {
+    let query = byte_serialize(to.as_bytes()).collect::<String>();
+    let known = visitor.app.provider.as_ref();
+    let provider = known.map(|known| (known.label.clone(), format!("/sign-in/provider?to={query}")));
+    show(&SignIn { frame: PageFrame::default(), provider, fault, to })
 }
 
-pub(super) async fn by_password(visitor: Visitor, Fields(form): Fields<Password>) -> Result<Response, Problem> {
-    let session = visitor.sign_in_by_password(form.login.trim(), &form.password).await?;
-    Ok(enter(&visitor.app, &session, local(&form.to)))
+pub(super) async fn page(visitor: Visitor, QueryInput(NextPage { to }): QueryInput<NextPage>) -> Page {
+    ways(&visitor, to, String::new())
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {

@@ -3,6 +3,7 @@ pub(crate) mod cluster;
 pub(crate) mod disk;
 pub(crate) mod engines;
 pub(crate) mod platform;
+pub(crate) mod provider;
 pub(crate) mod rows;
 pub(crate) mod server;
 

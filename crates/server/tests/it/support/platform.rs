@@ -44,7 +44,7 @@ impl Key {
         Self { kid, pair, n: key.n().to_bytes_be(), e: key.e().to_bytes_be() }
     }
 
-    fn public(&self) -> Value {
+    pub(crate) fn public(&self) -> Value {
         json!({"kty": "RSA", "use": "sig", "alg": "RS256", "kid": self.kid,
             "n": URL_SAFE_NO_PAD.encode(&self.n), "e": URL_SAFE_NO_PAD.encode(&self.e)})
     }

@@ -170,7 +170,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
         let key = hmac::Key::new(hmac::HMAC_SHA256, secret.text("value").expect("a text").as_bytes());
         let words: Vec<&str> = late.state.split('.').collect();
         for (expires_at, status) in [(words[1], 303), ("1000", 403)] {
-            let state = format!("{}.{expires_at}.{}.again", words[0], words[2]);
+            let state = format!("{}.{expires_at}.{}.0..again", words[0], words[2]);
             let state = format!("{state}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, state.as_bytes())));
             let nonce = hmac::sign(&key, format!("nonce {state}").as_bytes());
             let nonce: String = nonce.as_ref().iter().map(|byte| format!("{byte:02x}")).collect();

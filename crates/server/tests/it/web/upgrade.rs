@@ -77,8 +77,9 @@ const BACK_TO_THE_FIRST: &[&str] = &[
     "DROP TABLE suite",
     "DROP TABLE server_secret",
     "ALTER TABLE assignment DROP COLUMN revision",
+    "ALTER TABLE account ADD COLUMN password TEXT",
     "DELETE FROM schema_change WHERE number > 1",
-    "INSERT INTO account (login, name, created_at) VALUES ('ada', 'Ada', {now})",
+    "INSERT INTO account (login, name, created_at, password) VALUES ('ada', 'Ada', {now}, 'argon2id$')",
 ];
 
 #[test]

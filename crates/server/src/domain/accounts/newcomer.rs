@@ -1,0 +1,107 @@
+//! People whom another service names: a learning platform, or a provider. An issuer and its subject are a person.
+use crate::{
+    db::{DbError, Transaction},
+    domain::accounts::identity,
+    secret::random_hex,
+    values,
+};
+
+/// A person as an issuer describes them.
+pub(in crate::domain) struct Newcomer<'a> {
+    /// A platform's issuer; a provider's begins with a word of its own, so that no platform can speak for it.
+    pub(in crate::domain) issuer: &'a str,
+    pub(in crate::domain) subject: &'a str,
+    pub(in crate::domain) name: Option<&'a str>,
+    /// Makes the login; of an address the part before the @.
+    pub(in crate::domain) nickname: Option<&'a str>,
+}
+
+impl Newcomer<'_> {
+    /// Returns the account that belongs to the person.
+    pub(in crate::domain) async fn find(&self, transaction: &mut Transaction) -> Result<Option<i64>, DbError> {
+        let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
+        let known = transaction.row(statement, values![self.issuer, self.subject]).await?;
+        known.map(|row| row.int("account")).transpose()
+    }
+
+    /// Makes an account the person's; one that was joined in a session that a link of staff began is vouched for.
+    pub(in crate::domain) async fn join(
+        &self,
+        transaction: &mut Transaction,
+        account: i64,
+        is_vouched: bool,
+    ) -> Result<(), DbError> {
+        let statement = "INSERT INTO platform_account (issuer, subject, account, vouched, created_at)
+            VALUES (?, ?, ?, ?, {now})";
+        transaction.execute(statement, values![self.issuer, self.subject, account, is_vouched]).await.map(drop)
+    }
+
+    /// Finds the person's account, or makes it; its name is the issuer's. It never takes an existing account of the
+    /// same name or address: people choose these for themselves.
+    pub(in crate::domain) async fn find_or_make(&self, transaction: &mut Transaction) -> Result<i64, DbError> {
+        let name = self.name.map(tidy).filter(|name| !name.is_empty());
+        if let Some(account) = self.find(transaction).await? {
+            if let Some(name) = name {
+                let statement = "UPDATE account SET name = ? WHERE id = ? AND name <> ?";
+                transaction.execute(statement, values![&name, account, &name]).await?;
+            }
+            return Ok(account);
+        }
+        let mailbox = self.nickname.and_then(|nickname| nickname.split('@').next());
+        let base = login_of(mailbox.or(name.as_deref()).unwrap_or_default());
+        for number in 1.. {
+            let login = match number {
+                1 => base.clone(),
+                2..=9 => format!("{base}-{number}"),
+                _ => format!("{base}-{}", &random_hex()[..8]),
+            };
+            let statement = "INSERT INTO account (login, name, created_at) VALUES (?, ?, {now})
+                ON CONFLICT (login) DO NOTHING RETURNING id";
+            let made = transaction.row(statement, values![&login, name.as_ref().unwrap_or(&login)]).await?;
+            let Some(made) = made else { continue };
+            let account = made.int("id")?;
+            self.join(transaction, account, false).await?;
+            return Ok(account);
+        }
+        Err(DbError::Other("no login is free".to_owned()))
+    }
+}
+
+/// Returns a name as this service shows names.
+fn tidy(name: &str) -> String {
+    let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
+    plain.trim().chars().take(200).collect::<String>().trim().to_owned()
+}
+
+/// Makes a login from a person's name, whatever it holds.
+fn login_of(word: &str) -> String {
+    let plain = |c: char| match c.to_ascii_lowercase() {
+        c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
+        c if c.is_whitespace() => Some('.'),
+        _ => None,
+    };
+    let login: String = word.chars().filter_map(plain).take(40).collect();
+    let login = login.trim_matches(['-', '.', '_']);
+    if login.is_empty() { "user".to_owned() } else { login.to_owned() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn logins_are_made_of_what_people_are_called() {
+        for (word, login) in [
+            ("Ada.Lovelace", "ada.lovelace"),
+            ("Ada Lovelace", "ada.lovelace"),
+            ("-x-", "x"),
+            ("\u{5d0}\u{5d3}\u{5d4}", "user"),
+            ("a'; DROP TABLE", "a.drop.table"),
+            ("", "user"),
+        ] {
+            assert_eq!(login_of(word), login, "{word}");
+            assert!(identity::check_slug("a login", &login_of(word)).is_ok());
+        }
+        assert_eq!(tidy(" A\nB\u{0} "), "A B");
+    }
+}

@@ -1,0 +1,133 @@
+//! Sign-ins that another service must confirm: a learning platform, or a provider. The data for the answer are signed
+//! and not stored, so any number of sign-ins may begin. Each is answered once, in the same browser, and soon.
+use crate::{
+    db::{DbError, Transaction},
+    domain::{
+        App, NewSecret, Secrets,
+        accounts::{identity, throttle},
+    },
+    problem::{Problem, ensure},
+    secret::{hex, random_hex},
+    values,
+};
+use base64::{Engine, prelude::BASE64_URL_SAFE_NO_PAD as URL_SAFE_NO_PAD};
+use ring::hmac;
+use std::time::Instant;
+
+/// The longest time that a sign-in may take, in milliseconds.
+const LOGIN: i64 = 10 * 60 * 1000;
+
+/// Sign-ins at one service that an address may begin in a minute: a lecture hall may be one address.
+const LOGINS: u32 = 3000;
+
+/// The sign-in was not begun here, was answered before, or has taken too long.
+pub(in crate::domain) const UNKNOWN: &str = "this sign-in is unknown, used or too old";
+
+/// A sign-in that was begun.
+pub(in crate::domain) struct BegunSignIn {
+    /// The signed words, which come back.
+    pub(in crate::domain) state: String,
+    /// The word that the browser keeps, and shows when it comes back.
+    pub(in crate::domain) browser: String,
+}
+
+/// A sign-in that came back.
+pub(in crate::domain) struct PendingSignIn {
+    state: String,
+    expires_at: i64,
+    /// The service that must confirm it: a platform's number, or a provider.
+    pub(in crate::domain) at: String,
+    /// The account that is to be connected; 0 for none.
+    pub(in crate::domain) account: i64,
+    /// The page to go on to.
+    pub(in crate::domain) to: String,
+}
+
+impl App {
+    /// Begins a sign-in at a service, in a browser that may have begun others there.
+    pub(in crate::domain) async fn begin_sign_in(
+        &self,
+        at: &str,
+        (secrets, known): (&Secrets, Option<&String>),
+        (account, to): (i64, &str),
+    ) -> Result<BegunSignIn, Problem> {
+        if !self.0.throttle.pass(throttle::bucket(secrets.address, at), LOGINS, Instant::now()) {
+            return Err(Problem::too_many("too many people sign in from your address at this moment"));
+        }
+        // One word for several windows of a browser.
+        let is_word = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
+        let browser = known.filter(is_word).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
+        let key = self.signing_key().await?;
+        let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
+        let (expires_at, shown, to) = (now + LOGIN, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
+        let words = format!("{at}.{expires_at}.{shown}.{account}.{to}.{}", random_hex());
+        let state = format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, words.as_bytes())));
+        Ok(BegunSignIn { state, browser })
+    }
+
+    /// Returns a secret word of a sign-in, which only this service can compute from the state.
+    pub(in crate::domain) async fn word_of(&self, kind: &str, state: &str) -> Result<String, Problem> {
+        let key = self.signing_key().await?;
+        Ok(hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
+    }
+
+    /// Returns the sign-in with this state, which this browser began.
+    ///
+    /// # Errors
+    /// When the state is unknown, used or too old, or comes from another browser.
+    pub(in crate::domain) async fn pending_sign_in(
+        &self,
+        state: &str,
+        browser: Option<&String>,
+        refused: fn(&'static str) -> Problem,
+    ) -> Result<PendingSignIn, Problem> {
+        let key = self.signing_key().await?;
+        let (pending, shown) = read(&key, state).ok_or_else(|| refused(UNKNOWN))?;
+        let statement = "SELECT 1 AS n WHERE CAST(? AS {int}) > {now}
+            AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
+        let values = values![pending.expires_at, identity::digest(state)];
+        let fresh = self.0.database.read().await?.row(statement, values).await?;
+        ensure(fresh.is_some(), refused(UNKNOWN))?;
+        let browser = browser.ok_or_else(|| refused("your browser did not send the cookie of this sign-in"))?;
+        // The sign-in began in another browser: its owner wants to sign this browser in as somebody else.
+        ensure(shown == identity::digest(browser), refused("this sign-in was begun in another browser"))?;
+        Ok(pending)
+    }
+
+    /// Returns the key by which the service recognizes what it signed: the same for all servers of a database.
+    async fn signing_key(&self) -> Result<hmac::Key, Problem> {
+        let found = self.0.signing_key.get_or_try_init(async || {
+            let mut transaction = self.0.database.begin().await?;
+            let statement =
+                "INSERT INTO server_secret (name, value) VALUES ('signing', ?) ON CONFLICT (name) DO NOTHING";
+            transaction.execute(statement, values![NewSecret::new("").reveal()]).await?;
+            let statement = "SELECT value FROM server_secret WHERE name = 'signing'";
+            let value = transaction.one(statement, values![]).await?.text("value")?;
+            transaction.commit().await?;
+            Ok::<_, DbError>(value)
+        });
+        Ok(hmac::Key::new(hmac::HMAC_SHA256, found.await?.as_bytes()))
+    }
+}
+
+impl PendingSignIn {
+    /// Marks the sign-in as used; returns whether it was unused.
+    pub(in crate::domain) async fn use_up(&self, transaction: &mut Transaction) -> Result<bool, DbError> {
+        let expired = "DELETE FROM platform_login
+            WHERE state IN (SELECT state FROM platform_login WHERE expires_at < {now} {skip locked})";
+        transaction.execute(expired, values![]).await?;
+        let statement = "INSERT INTO platform_login (state, expires_at) VALUES (?, ?) ON CONFLICT (state) DO NOTHING";
+        Ok(transaction.execute(statement, values![identity::digest(&self.state), self.expires_at]).await? > 0)
+    }
+}
+
+/// Reads signed words, with the digest of the browser's word among them.
+fn read(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
+    let (words, tag) = state.rsplit_once('.')?;
+    hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
+    let mut words = words.split('.');
+    let (at, expires_at) = (words.next()?.to_owned(), words.next()?.parse().ok()?);
+    let (browser, account) = (words.next()?.to_owned(), words.next()?.parse().ok()?);
+    let to = String::from_utf8(URL_SAFE_NO_PAD.decode(words.next()?).ok()?).ok()?;
+    Some((PendingSignIn { state: state.to_owned(), expires_at, at, account, to }, browser))
+}

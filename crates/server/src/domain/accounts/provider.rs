@@ -1,0 +1,187 @@
+//! Signing in at an OpenID Connect provider. The account of each subject of the provider is kept. A mail address leads
+//! to an account only once: to one that a course's staff made, and that is nobody's own yet.
+use crate::{
+    db::Transaction,
+    domain::{
+        App, LaunchTarget, LoginAnswer, Person, Visitor,
+        accounts::{
+            identity::{self, Way},
+            newcomer::Newcomer,
+            pending::UNKNOWN,
+        },
+        view::{self, Entry},
+    },
+    oidc::{Provider, ProviderFault, ProviderPerson, SignInWords},
+    problem::{Problem, ensure},
+    values,
+};
+
+/// The name of the provider among the services that confirm sign-ins.
+const AT: &str = "provider";
+
+impl From<ProviderFault> for Problem {
+    fn from(fault: ProviderFault) -> Self {
+        match fault {
+            ProviderFault::Away(detail) => Self::unavailable(detail),
+            ProviderFault::Rejected(detail) => Self::refused_sign_in(detail),
+        }
+    }
+}
+
+impl App {
+    fn known_provider(&self) -> Result<&Provider, Problem> {
+        self.provider.as_ref().ok_or_else(|| Problem::not_found("provider"))
+    }
+
+    /// Returns the address to which the provider sends people back.
+    fn answer_address(&self) -> String {
+        format!("{}/sign-in/provider/answer", self.public)
+    }
+
+    /// Computes the words of a sign-in with this state.
+    async fn compute_words(&self, state: &str) -> Result<SignInWords, Problem> {
+        let (nonce, verifier) = (self.word_of("nonce", state).await?, self.word_of("verifier", state).await?);
+        Ok(SignInWords { state: state.to_owned(), nonce, verifier })
+    }
+}
+
+/// Returns the provider's issuer, as it is kept.
+fn issuer(provider: &Provider) -> String {
+    format!("{AT} {}", provider.issuer())
+}
+
+impl Visitor {
+    /// Begins a sign-in at the provider, which leads to a page afterwards. For a signed-in person it connects their
+    /// account.
+    ///
+    /// # Errors
+    /// When there is no provider, or it does not answer, or the person may not.
+    pub async fn begin_at_provider(&self, to: &str, connects: Option<&Person>) -> Result<LoginAnswer, Problem> {
+        let provider = self.app.known_provider()?;
+        let account = match connects {
+            Some(person) => person.lately_at_browser().map(|_| person.account.id)?,
+            None => 0,
+        };
+        let browser = (&self.secrets, self.secrets.provider.as_ref());
+        let begun = self.app.begin_sign_in(AT, browser, (account, to)).await?;
+        let address = provider.address(&self.app.answer_address(), self.app.compute_words(&begun.state).await?).await?;
+        Ok(LoginAnswer { address: address.into(), browser: begun.browser })
+    }
+
+    /// Signs in the person for whom the provider gave a code, in answer to a sign-in that this browser began.
+    ///
+    /// # Errors
+    /// When the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
+    pub async fn sign_in_by_provider(&self, state: &str, code: &str) -> Result<LaunchTarget, Problem> {
+        let (app, browser) = (&self.app, self.secrets.provider.as_ref());
+        let provider = app.known_provider()?;
+        let pending = app.pending_sign_in(state, browser, Problem::refused_sign_in).await?;
+        ensure(pending.at == AT, Problem::refused_sign_in(UNKNOWN))?;
+        let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_words(state).await?).await?;
+        let connects = match pending.account {
+            0 => None,
+            account => {
+                let connects = app.person(&self.secrets).await.ok().filter(|person| person.account.id == account);
+                let signed_out = || Problem::refused_sign_in("you are not signed in to the account to connect");
+                Some(connects.ok_or_else(signed_out)?)
+            }
+        };
+        let mut transaction = app.0.database.begin().await?;
+        ensure(pending.use_up(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN))?;
+        let account = match connects {
+            Some(connects) => connect(&mut transaction, provider, &person, &connects).await?,
+            None => account(&mut transaction, provider, &person).await?,
+        };
+        let session = identity::begin_session(&mut transaction, account, Way::Own).await?;
+        transaction.commit().await?;
+        Ok(LaunchTarget { session, to: pending.to })
+    }
+}
+
+fn newcomer<'a>(issuer: &'a str, person: &'a ProviderPerson) -> Newcomer<'a> {
+    let (name, nickname) = (person.name.as_deref(), person.nickname.as_deref());
+    Newcomer { issuer, subject: &person.subject, name, nickname }
+}
+
+/// Connects an account with the provider: it is the person's own from then on, and its earlier sessions end.
+async fn connect(
+    transaction: &mut Transaction,
+    provider: &Provider,
+    person: &ProviderPerson,
+    connects: &Person,
+) -> Result<i64, Problem> {
+    let (account, is_vouched) = (connects.account.id, connects.lately_at_browser()?.is_vouched);
+    let issuer = issuer(provider);
+    let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
+    if transaction.row(statement, values![account, &issuer]).await?.is_some() {
+        return Err(Problem::conflict("your account is connected already", "disconnect it first, on the page Account"));
+    }
+    identity::end_sessions(transaction, account).await?;
+    identity::end_vouched(transaction, account).await?;
+    // They may have signed in there before, and got an account of their own.
+    let newcomer = newcomer(&issuer, person);
+    let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
+    transaction.execute(statement, values![&issuer, &person.subject]).await?;
+    newcomer.join(transaction, account, is_vouched).await?;
+    note(transaction, provider, account, &connects.account.login).await?;
+    Ok(account)
+}
+
+async fn note(transaction: &mut Transaction, provider: &Provider, account: i64, login: &str) -> Result<(), Problem> {
+    let text = format!("{login} signs in at {}", provider.label);
+    Ok(view::note(transaction, &Entry::new("account", account, &text)).await?)
+}
+
+/// Finds or makes the account of a person who signs in.
+async fn account(transaction: &mut Transaction, provider: &Provider, person: &ProviderPerson) -> Result<i64, Problem> {
+    let issuer = issuer(provider);
+    let newcomer = newcomer(&issuer, person);
+    if newcomer.find(transaction).await?.is_none()
+        && let Some(mailbox) = &person.mailbox
+    {
+        // Staff made it for the owner of this address, and it is nobody's own yet.
+        let statement = "SELECT id FROM account
+            WHERE login = ? AND managed_by IS NOT NULL AND disabled_at IS NULL {for update}";
+        if let Some(row) = transaction.row(statement, values![mailbox]).await? {
+            let account = row.int("id")?;
+            if identity::is_trusted(transaction, account).await? {
+                let detail = format!("{mailbox} is staff here: sign in by your link, and connect your account there");
+                return Err(Problem::refused_sign_in(detail));
+            }
+            // Staff could have signed in as this account.
+            identity::end_all(transaction, account).await?;
+            newcomer.join(transaction, account, false).await?;
+            note(transaction, provider, account, mailbox).await?;
+        }
+    }
+    let account = newcomer.find_or_make(transaction).await?;
+    let row = transaction.one("SELECT disabled_at FROM account WHERE id = ?", values![account]).await?;
+    ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_sign_in("your account here is closed"))?;
+    Ok(account)
+}
+
+impl Person {
+    /// Returns whether they sign in at the provider.
+    ///
+    /// # Errors
+    /// When the database does not answer.
+    pub async fn is_connected(&self) -> Result<bool, Problem> {
+        let Some(provider) = &self.app.provider else { return Ok(false) };
+        let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
+        let mut transaction = self.app.0.database.read().await?;
+        Ok(transaction.row(statement, values![self.account.id, issuer(provider)]).await?.is_some())
+    }
+
+    /// Disconnects their account from the provider.
+    ///
+    /// # Errors
+    /// When there is no provider, or they did not sign in lately.
+    pub async fn disconnect(&self) -> Result<(), Problem> {
+        let issuer = issuer(self.app.known_provider()?);
+        self.lately_at_browser()?;
+        let mut transaction = self.app.0.database.begin().await?;
+        let statement = "DELETE FROM platform_account WHERE account = ? AND issuer = ?";
+        transaction.execute(statement, values![self.account.id, issuer]).await?;
+        Ok(transaction.commit().await?)
+    }
+}

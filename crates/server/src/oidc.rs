@@ -1,0 +1,296 @@
+//! An OpenID Connect provider, by which the people of an organization sign in: the authorization code flow with PKCE.
+//! The crate `openidconnect` writes the requests and checks the answers. This room sends them, keeps the provider's
+//! configuration, and returns the provider's description of a person. `domain` finds the account.
+use crate::{net, problem::ensure};
+use anyhow::{Context as _, anyhow};
+use openidconnect::{
+    AccessToken, AuthType, AuthorizationCode, ClaimsVerificationError, ClientId, ClientSecret, CsrfToken,
+    EmptyAdditionalClaims, EndpointMaybeSet, EndpointNotSet, EndpointSet, HttpRequest, HttpResponse, IssuerUrl, Nonce,
+    OAuth2TokenResponse as _, PkceCodeChallenge, PkceCodeVerifier, RedirectUrl, RequestTokenError, Scope,
+    SignatureVerificationError, SubjectIdentifier, TokenResponse as _, UserInfoClaims,
+    core::{
+        CoreAuthenticationFlow, CoreClient, CoreClientAuthMethod, CoreGenderClaim, CoreIdToken, CoreIdTokenClaims,
+        CoreJwsSigningAlgorithm, CoreProviderMetadata,
+    },
+};
+use std::time::{Duration, Instant};
+use thiserror::Error;
+use tokio::sync::Mutex;
+use ureq::Agent;
+use url::Url;
+
+/// The age up to which the provider's configuration is used without reading it again.
+const FRESH: Duration = Duration::from_secs(3600);
+
+/// The least time between two readings, for an unknown key or after a failure.
+const PAUSE: Duration = Duration::from_secs(1);
+
+/// The longest time that the provider may take.
+const PATIENCE: Duration = Duration::from_secs(10);
+
+/// The longest answer that is read.
+const ANSWER: u64 = 1 << 20;
+
+/// The accepted signatures of tokens: only the provider has the private part of their keys.
+const ALGORITHMS: [CoreJwsSigningAlgorithm; 9] = [
+    CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha256,
+    CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha384,
+    CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha512,
+    CoreJwsSigningAlgorithm::RsaSsaPssSha256,
+    CoreJwsSigningAlgorithm::RsaSsaPssSha384,
+    CoreJwsSigningAlgorithm::RsaSsaPssSha512,
+    CoreJwsSigningAlgorithm::EcdsaP256Sha256,
+    CoreJwsSigningAlgorithm::EcdsaP384Sha384,
+    CoreJwsSigningAlgorithm::EdDsa,
+];
+
+/// A client of the provider, with the addresses that it published.
+type Client =
+    CoreClient<EndpointSet, EndpointNotSet, EndpointNotSet, EndpointNotSet, EndpointMaybeSet, EndpointMaybeSet>;
+
+/// The reason why nobody was signed in.
+#[derive(Debug, Clone, Error)]
+pub enum ProviderFault {
+    /// The provider does not answer; a later request may succeed.
+    #[error("{0}")]
+    Away(String),
+    /// The provider rejects the sign-in, or its answer is not believed.
+    #[error("{0}")]
+    Rejected(String),
+}
+
+/// A person as the provider describes them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ProviderPerson {
+    /// The provider's name for the person, which never changes.
+    pub subject: String,
+    /// The person's name.
+    pub name: Option<String>,
+    /// The person's short name there: a new account's login is made from it.
+    pub nickname: Option<String>,
+    /// The part before the @ of an address that the provider has confirmed, in the domain that is allowed.
+    pub mailbox: Option<String>,
+}
+
+/// The words of one sign-in, which the provider sees and gives back.
+#[derive(Debug, Clone)]
+pub struct SignInWords {
+    /// Sent back as it is.
+    pub state: String,
+    /// Is in the token.
+    pub nonce: String,
+    /// Proves that the code is redeemed by who asked for it: 43 characters or more.
+    pub verifier: String,
+}
+
+/// The claims about a person that are used here.
+struct SaidClaims {
+    name: Option<String>,
+    nickname: Option<String>,
+    email: Option<String>,
+    is_confirmed: bool,
+}
+
+/// Reads the claims of a token or an answer: both have these methods, and no trait for them.
+macro_rules! said {
+    ($claims:ident) => {
+        SaidClaims {
+            name: $claims.name().and_then(|name| name.get(None)).map(|name| name.to_string()),
+            nickname: $claims.preferred_username().map(|name| name.to_string()),
+            email: $claims.email().map(|email| email.to_string()),
+            is_confirmed: $claims.email_verified() == Some(true),
+        }
+    };
+}
+
+/// The provider's configuration, and when it was read.
+#[derive(Debug)]
+struct KnownConfiguration {
+    asked_at: Instant,
+    metadata: Result<CoreProviderMetadata, ProviderFault>,
+}
+
+/// A provider, and this service as its client.
+#[derive(Debug)]
+pub struct Provider {
+    issuer: IssuerUrl,
+    client: ClientId,
+    secret: ClientSecret,
+    /// The provider's name on pages.
+    pub label: String,
+    domain: Option<String>,
+    agent: Agent,
+    published: Mutex<Option<KnownConfiguration>>,
+}
+
+impl Provider {
+    /// Creates the client of a provider. With a domain only people with a confirmed address in it may sign in.
+    ///
+    /// # Errors
+    /// When the issuer is no address by HTTPS. On this machine HTTP will do, for tests.
+    pub fn new(
+        issuer: String,
+        client: String,
+        secret: String,
+        label: Option<String>,
+        domain: Option<String>,
+    ) -> anyhow::Result<Self> {
+        let address = Url::parse(&issuer).with_context(|| format!("{issuer} is not an address"))?;
+        let host = address.host_str().unwrap_or_default();
+        let over_http = address.scheme() == "http" && matches!(host, "127.0.0.1" | "[::1]" | "localhost");
+        ensure(over_http || address.scheme() == "https", anyhow!("the issuer must be https://..., not {issuer}"))?;
+        Ok(Self {
+            label: label.unwrap_or_else(|| host.to_owned()),
+            issuer: IssuerUrl::new(issuer)?,
+            client: ClientId::new(client),
+            secret: ClientSecret::new(secret),
+            domain: domain.map(|domain| domain.to_ascii_lowercase()),
+            agent: net::agent(over_http, PATIENCE),
+            published: Mutex::default(),
+        })
+    }
+
+    /// Returns the provider's issuer: with a subject it names a person.
+    pub fn issuer(&self) -> &str {
+        &self.issuer
+    }
+
+    /// Returns the domain in which people must have an address to sign in.
+    pub fn domain(&self) -> Option<&str> {
+        self.domain.as_deref()
+    }
+
+    /// Returns the provider's configuration, read at most this time ago.
+    async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
+        let mut published = self.published.lock().await;
+        if let Some(KnownConfiguration { asked_at, metadata }) = &*published
+            && asked_at.elapsed() < if metadata.is_ok() { age } else { PAUSE }
+        {
+            return metadata.clone();
+        }
+        let http = |request| send(self.agent.clone(), request);
+        let asked = CoreProviderMetadata::discover_async(self.issuer.clone(), &http).await;
+        let metadata = asked.map_err(|error| {
+            let why = format!("{:#}", anyhow!(error));
+            tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
+            ProviderFault::Away(format!("{} does not answer as it should", self.label))
+        });
+        *published = Some(KnownConfiguration { asked_at: Instant::now(), metadata: metadata.clone() });
+        metadata
+    }
+
+    fn client(&self, metadata: CoreProviderMetadata, redirect: &str) -> Result<Client, ProviderFault> {
+        let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
+        let by_header = methods.is_empty() || methods.contains(&CoreClientAuthMethod::ClientSecretBasic);
+        let redirect = RedirectUrl::new(redirect.to_owned()).map_err(rejected)?;
+        Ok(CoreClient::from_provider_metadata(metadata, self.client.clone(), Some(self.secret.clone()))
+            .set_redirect_uri(redirect)
+            .set_auth_type(if by_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
+    }
+
+    /// Returns the address at which a browser asks the provider to sign somebody in.
+    ///
+    /// # Errors
+    /// When the provider does not answer.
+    pub async fn address(&self, redirect: &str, words: SignInWords) -> Result<Url, ProviderFault> {
+        let client = self.client(self.metadata(FRESH).await?, redirect)?;
+        let SignInWords { state, nonce, verifier } = words;
+        let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));
+        let flow = CoreAuthenticationFlow::AuthorizationCode;
+        let (address, ..) = client
+            .authorize_url(flow, || CsrfToken::new(state), || Nonce::new(nonce))
+            .add_scopes(["profile", "email"].map(|scope| Scope::new(scope.to_owned())))
+            .set_pkce_challenge(challenge)
+            .url();
+        Ok(address)
+    }
+
+    /// Returns the person for whom the provider gave a code.
+    ///
+    /// # Errors
+    /// When the provider does not answer, or rejects the code, or its answer is not believed.
+    pub async fn person(
+        &self,
+        redirect: &str,
+        code: String,
+        words: SignInWords,
+    ) -> Result<ProviderPerson, ProviderFault> {
+        let client = self.client(self.metadata(FRESH).await?, redirect)?;
+        let http = |request| send(self.agent.clone(), request);
+        let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(rejected)?;
+        let asked = asked.set_pkce_verifier(PkceCodeVerifier::new(words.verifier)).request_async(&http).await;
+        let answer = asked.map_err(|error| match error {
+            RequestTokenError::Request(_) => ProviderFault::Away(format!("{} does not answer", self.label)),
+            error => rejected(error),
+        })?;
+        let token = answer.id_token().ok_or_else(|| rejected(anyhow!("there is no token about a person")))?;
+        let nonce = Nonce::new(words.nonce);
+        let claims = match claims(&client, token, &nonce) {
+            // Providers change their keys.
+            Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
+                claims(&self.client(self.metadata(PAUSE).await?, redirect)?, token, &nonce)
+            }
+            claims => claims,
+        };
+        let claims = claims.map_err(rejected)?;
+        let said = said!(claims);
+        // Some providers put the address into the token, others only into a further answer.
+        let more = match said.email {
+            Some(_) => None,
+            None => self.more(&client, answer.access_token().clone(), claims.subject().clone()).await?,
+        };
+        self.read(claims.subject().to_string(), more.unwrap_or(said))
+    }
+
+    /// Returns the claims about a person beyond their token, if the provider has an address for these.
+    async fn more(
+        &self,
+        client: &Client,
+        token: AccessToken,
+        subject: SubjectIdentifier,
+    ) -> Result<Option<SaidClaims>, ProviderFault> {
+        let Ok(asked) = client.user_info(token, Some(subject)) else { return Ok(None) };
+        let http = |request| send(self.agent.clone(), request);
+        let claims: UserInfoClaims<EmptyAdditionalClaims, CoreGenderClaim> =
+            asked.request_async(&http).await.map_err(rejected)?;
+        Ok(Some(said!(claims)))
+    }
+
+    fn read(&self, subject: String, said: SaidClaims) -> Result<ProviderPerson, ProviderFault> {
+        ensure((1..=255).contains(&subject.len()), rejected(anyhow!("sub must be 1 to 255 characters long")))?;
+        let email = said.email.map(|email| email.to_ascii_lowercase());
+        let parts = email.as_deref().and_then(|email| email.rsplit_once('@'));
+        let mailbox = parts.filter(|(_, domain)| said.is_confirmed && self.domain.as_deref() == Some(domain));
+        let mailbox = mailbox.map(|(mailbox, _)| mailbox.to_owned());
+        if let (Some(domain), None) = (&self.domain, &mailbox) {
+            let detail = format!("only people whose address in {domain} is confirmed by {} may sign in", self.label);
+            return Err(ProviderFault::Rejected(detail));
+        }
+        Ok(ProviderPerson { subject, name: said.name, nickname: mailbox.clone().or(said.nickname).or(email), mailbox })
+    }
+}
+
+/// Checks a token: the provider signed it for this client and this sign-in, and it has not expired.
+fn claims<'a>(
+    client: &Client,
+    token: &'a CoreIdToken,
+    nonce: &Nonce,
+) -> Result<&'a CoreIdTokenClaims, ClaimsVerificationError> {
+    token.claims(&client.id_token_verifier().set_allowed_algs(ALGORITHMS), nonce)
+}
+
+/// Returns the fault of an answer that is not believed, with all its causes.
+fn rejected(error: impl Into<anyhow::Error>) -> ProviderFault {
+    let why: String = format!("{:#}", error.into()).chars().filter(|c| !c.is_control()).take(300).collect();
+    ProviderFault::Rejected(format!("the provider's answer is not accepted: {why}"))
+}
+
+/// Sends a request, away from the threads that must not wait.
+async fn send(agent: Agent, request: HttpRequest) -> Result<HttpResponse, std::io::Error> {
+    let sent = tokio::task::spawn_blocking(move || {
+        let (head, mut body) = agent.run(request).map_err(std::io::Error::other)?.into_parts();
+        let body = body.with_config().limit(ANSWER).read_to_vec().map_err(std::io::Error::other)?;
+        Ok(HttpResponse::from_parts(head, body))
+    });
+    sent.await?
+}

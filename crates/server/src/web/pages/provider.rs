@@ -1,0 +1,68 @@
+//! Signing in at an OpenID Connect provider.
+use super::{
+    super::{input::QueryInput, who::provider_cookie},
+    see,
+    sign_in::{self, NextPage},
+};
+use crate::{
+    domain::{App, LoginAnswer, Person, Visitor},
+    problem::Problem,
+};
+use axum::{
+    http::StatusCode,
+    response::{IntoResponse, Redirect, Response},
+};
+use serde::Deserialize;
+
+/// The provider's answer.
+#[derive(Deserialize)]
+pub(super) struct Answer {
+    state: Option<String>,
+    code: Option<String>,
+    error: Option<String>,
+    error_description: Option<String>,
+}
+
+/// Leads to the provider, with a cookie by which the browser is known when it comes back. What the provider makes a
+/// browser send is a page that it opens, so `Lax` will do.
+fn lead(app: &App, begun: &LoginAnswer) -> Response {
+    let secure = if app.is_secure() { "; Secure" } else { "" };
+    let (name, word) = (provider_cookie(app.is_secure()), &begun.browser);
+    let cookie = format!("{name}={word}; Path=/; HttpOnly; SameSite=Lax; Max-Age=600{secure}");
+    sign_in::with_cookie(&cookie, &begun.address)
+}
+
+/// Begins a sign-in. A provider that is away is told of on the page with the other ways in.
+pub(super) async fn begin(
+    visitor: Visitor,
+    QueryInput(NextPage { to }): QueryInput<NextPage>,
+) -> Result<Response, Problem> {
+    match visitor.begin_at_provider(sign_in::local(&to), None).await {
+        Ok(begun) => Ok(lead(&visitor.app, &begun)),
+        Err(problem) if problem.status() == StatusCode::SERVICE_UNAVAILABLE => {
+            let page = sign_in::ways(&visitor, to, problem.detail)?;
+            Ok((StatusCode::SERVICE_UNAVAILABLE, page).into_response())
+        }
+        Err(problem) => Err(problem),
+    }
+}
+
+pub(super) async fn connect(visitor: Visitor, person: Person) -> Result<Response, Problem> {
+    let begun = visitor.begin_at_provider("/account", Some(&person)).await?;
+    Ok(lead(&visitor.app, &begun))
+}
+
+pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
+    let (Some(state), Some(code)) = (&answer.state, &answer.code) else {
+        return Err(match sign_in::fault_of([answer.error, answer.error_description]) {
+            None => Problem::invalid("state and code are missing"),
+            Some(fault) => Problem::refused_sign_in(format!("the provider says: {fault}")),
+        });
+    };
+    let signed_in = visitor.sign_in_by_provider(state, code).await?;
+    Ok(sign_in::enter(&visitor.app, &signed_in.session, sign_in::local(&signed_in.to)))
+}
+
+deeds! {
+    disconnect(person: Person): person.disconnect() => "/account";
+}
