@@ -1,6 +1,10 @@
 //! A detection call on a page: curves, intervals, coefficients.
-use super::markup::{compared, number, text};
+use super::{
+    markup::{compared, number},
+    rendered,
+};
 use crate::{describe::pair_key, detect::Detect, number::general};
+use askama::Template;
 use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
     PairWords, PassWords, differing, factor,
@@ -11,56 +15,76 @@ use fosssim_render::{
     detection,
     plot::{Embedding, PlottedPolynomial, PolynomialPlot},
 };
-use std::fmt::Write;
 
 /// Renders a call under its name, folded unless it is open from the start.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
-    let opened = if open { " open" } else { "" };
-    let mut out = format!(
-        "<details class=\"call\"{opened}><summary><h{depth}>Step {step}: {0} <span class=\"hint\">({1}, {2})</span></h{depth}></summary>\n\
-         <section data-step=\"{step}\" data-pair=\"{2}\">",
-        text(&PairWords(call.pair).to_string()),
-        text(&PassWords(call.pass).to_string()),
-        pair_key(call.pair)
-    );
-    let study = match &call.study {
-        Ok(study) => study,
-        Err(error) => {
-            let _ = writeln!(out, "<p>{}</p></section></details>", text(&error.to_string()));
-            return out;
+    let (pair, pass) = (PairWords(call.pair), PassWords(call.pass));
+    rendered(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
+}
+
+/// A call and its name.
+#[derive(Template)]
+#[template(path = "call.html")]
+struct CallContent<'a> {
+    step: u32,
+    call: &'a InspectedCall,
+    depth: usize,
+    open: bool,
+    pair: PairWords,
+    pass: PassWords,
+    key: String,
+}
+
+/// A coefficient of both sides, as markup.
+struct Row {
+    role: String,
+    power: usize,
+    expected: String,
+    own: String,
+    /// The fault, as a word; empty if there is none.
+    word: &'static str,
+}
+
+impl CallContent<'_> {
+    /// Returns the polynomials of the trace.
+    fn logged(&self) -> &[Vec<f64>] {
+        match &self.call.logged {
+            CallLog::These(logged) => logged,
+            CallLog::Nothing | CallLog::Unknown => &[],
         }
-    };
-    let _ = writeln!(out, "<p>{}</p>", text(&Detect { study, place: None }.decision(general)));
-    // Curves without a zero are flat lines; words describe them better.
-    if study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero))) {
-        let title = format!("Expected in step {step}: {}", PairWords(call.pair));
-        let _ = writeln!(out, "<figure>{}</figure>", detection::picture(study, &title, Embedding::Inline));
-    } else {
-        let _ = writeln!(out, "<p>{}</p>", text(&signs(study)));
     }
-    let logged: &[Vec<f64>] = match &call.logged {
-        CallLog::These(logged) => logged,
-        CallLog::Nothing => {
-            out += "<p class=\"bad\">Your trace has logged nothing for this pair in this pass: it is not tested.</p>\n";
-            &[]
-        }
-        CallLog::Unknown => &[],
-    };
-    out += &coefficients(study, logged, call.logged == CallLog::Nothing);
-    let differs: Vec<bool> = study.curves.iter().zip(logged).map(|(curve, own)| is_wrong(curve, own)).collect();
-    if !differs.contains(&true) {
-        return out + "</section></details>\n";
+
+    fn is_missing(&self) -> bool {
+        self.call.logged == CallLog::Nothing
     }
-    out += &own_decision(logged);
-    let mut wrong =
-        study.curves.iter().zip(logged).zip(&differs).filter(|(_, differs)| **differs).map(|(both, _)| both);
-    match (wrong.next(), wrong.next()) {
-        (Some((curve, own)), None) => {
-            out += &draw_both(step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own);
-        }
-        _ => out += &yours(step, call, study, logged),
+
+    /// Draws the expected curves.
+    fn expected(&self, study: &Study) -> String {
+        detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), Embedding::Inline)
     }
-    out + "</section></details>\n"
+
+    /// Renders the decision of the trace's own polynomials, and their curves, where one of them is wrong.
+    fn own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
+        let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
+        let curves = match (wrong.next(), wrong.next()) {
+            (None, _) => return String::new(),
+            (Some((curve, own)), None) => {
+                draw_both(self.step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own)
+            }
+            _ => yours(self.step, self.call, study, logged),
+        };
+        own_decision(logged) + &curves
+    }
+}
+
+/// Returns the decision of the expected polynomials.
+fn decision(study: &Study) -> String {
+    Detect { study, place: None }.decision(general)
+}
+
+/// Returns whether a curve has a zero within the step. Those without are flat lines: words say it better.
+fn changes_sign(study: &Study) -> bool {
+    study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero)))
 }
 
 /// Polynomials that keep their signs over the whole step, in words.
@@ -152,42 +176,27 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
 }
 
 /// Returns all coefficients side by side; those that differ after the factor that fits most are marked.
-fn coefficients(study: &Study, logged: &[Vec<f64>], nothing: bool) -> String {
-    let mut out = String::from(
-        "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"Coefficients\"><table>\
-         <caption>Coefficients, the expected ones with the factor of yours; what differs is marked</caption><thead><tr>\
-         <th scope=\"col\">polynomial</th><th scope=\"col\">power</th><th scope=\"col\" class=\"num\">expected</th>\
-         <th scope=\"col\" class=\"num\">yours</th><th scope=\"col\">result</th></tr></thead><tbody>\n",
-    );
+fn rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
+    let mut rows = Vec::new();
     for (place, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();
         let own = logged.get(place).map_or(&[][..], Vec::as_slice);
         let (marks, factor) = (marks(expected, own), factor(expected, own));
-        let powers = expected.len().max(own.len()).min(12);
-        for power in (0..powers).rev() {
+        for power in (0..expected.len().max(own.len()).min(12)).rev() {
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);
             let cell = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), number);
             let missing = nothing || own.is_empty() && !logged.is_empty();
             let differs = missing || !own.is_empty() && marks.get(power).copied().unwrap_or(true);
-            let (class, word) = match differs {
-                true if missing => (" class=\"off\"", "missing"),
-                true => (" class=\"off\"", "differs"),
-                false => ("", ""),
-            };
             let (right, yours) = match (at(expected), at(own)) {
                 (Some(expected), Some(own)) => compared(factor * expected, own, differs),
                 (expected, _) if logged.is_empty() && !nothing => (cell(expected), "not known".to_owned()),
                 (expected, own) => (cell(expected), cell(own)),
             };
-            let _ = writeln!(
-                out,
-                "<tr{class}><th scope=\"row\">{}</th><td>t<sup>{power}</sup></td><td class=\"num exact\">{right}</td>\
-                 <td class=\"num exact\">{yours}</td><td>{word}</td></tr>",
-                text(&curve.role.to_string()),
-            );
+            let word = if missing { "missing" } else { ["", "differs"][usize::from(differs)] };
+            rows.push(Row { role: curve.role.to_string(), power, expected: right, own: yours, word });
         }
     }
-    out + "</tbody></table></div>\n"
+    rows
 }
 
 /// Describes for each power whether the coefficients differ once one is multiplied by the factor that makes most of

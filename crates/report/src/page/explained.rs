@@ -4,12 +4,11 @@ use super::{
     case::mistakes,
     document,
     graded::{self, key, rank},
-    markup::text,
-    script, smallest,
+    rendered, script, smallest,
 };
 use crate::{case::Case, diagnosis::Diagnosis, words::first_divergence};
+use askama::Template;
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
-use std::fmt::Write;
 
 /// One trace with its pictures.
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
@@ -34,7 +33,7 @@ impl ExplainedPage<'_> {
     /// Renders the file.
     #[must_use]
     pub fn html(&self) -> String {
-        let Diagnosis { cases, common, located, smallest: small } = self.diagnosis;
+        let cases = &self.diagnosis.cases;
         let wrong = cases.iter().filter(|case| !case.accepted).count();
         let look = if wrong == 0 { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
@@ -44,49 +43,64 @@ impl ExplainedPage<'_> {
             (_, 1) => format!("1 of {} traces is wrong", cases.len()),
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
-        let mut body = format!("<h1><span class=\"{look}\">{}</span></h1>\n", text(&title));
-        body.extend(located.as_ref().map(graded::located));
-        // A single trace has these words itself.
-        for one in common.iter().filter(|_| cases.len() > 1) {
-            let explained = cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
-            let _ = writeln!(body, "<h2>Likely cause of {explained} of {wrong} wrong traces</h2>");
-            body += &mistakes(std::slice::from_ref(one), false);
-        }
-        let all: Vec<ExplainedCase<'_>> =
-            cases.iter().zip(self.cards).map(|(case, card)| (case, card.as_ref())).collect();
-        let first =
-            (0..all.len()).filter(|&number| !cases[number].accepted).min_by_key(|&number| telling(all[number], common));
-        for (number, (small, card)) in small.iter().zip(&self.cards[cases.len()..]).enumerate() {
-            body += &smallest::article(small, card.as_ref(), number + 1);
-        }
-        for (number, &one) in all.iter().enumerate() {
-            body += &article(one, number, first == Some(number));
-        }
-        document(&title, &body, script())
+        let content = ExplainedContent { page: self, title: &title, look, wrong };
+        document(&title, &rendered(&content), script())
     }
 }
 
-fn article((case, card): ExplainedCase<'_>, number: usize, open: bool) -> String {
-    let Case { scene, trace, accepted, note, first, explanations } = case;
-    let key = key(&format!("{number} {scene}"));
-    let (look, word) = if *accepted { ("good", "right") } else { ("bad", "wrong") };
-    let mut out = format!(
-        "<article class=\"case\" data-case=\"{key}\" data-scene=\"{0}\" aria-labelledby=\"title-{key}\">\n\
-         <details class=\"scene\"{1}><summary><h2 id=\"title-{key}\"><span class=\"chip {look}\">{word}</span> {0}</h2></summary>\n\
-         <p class=\"names\">{2}</p>\n",
-        text(scene),
-        if open { " open" } else { "" },
-        text(trace),
-    );
-    for line in note.iter().cloned().chain(first.as_ref().map(first_divergence)) {
-        let _ = writeln!(out, "<p>{}</p>", text(&line));
+/// The content of the file.
+#[derive(Template)]
+#[template(path = "explained.html")]
+struct ExplainedContent<'a> {
+    page: &'a ExplainedPage<'a>,
+    title: &'a str,
+    look: &'static str,
+    /// The number of wrong traces.
+    wrong: usize,
+}
+
+/// The details of a trace: its card, if one was drawn, and its motion.
+struct Trace<'a> {
+    case: &'a Case,
+    key: String,
+    open: bool,
+    shown: String,
+    motion: String,
+}
+
+impl ExplainedContent<'_> {
+    /// Returns the mistakes that explain several traces, with their number; a single trace has these words itself.
+    fn common(&self) -> impl Iterator<Item = (&Explanation, usize)> {
+        let Diagnosis { cases, common, .. } = self.page.diagnosis;
+        let explained = |one| cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
+        common.iter().filter(|_| cases.len() > 1).map(move |one| (one, explained(one)))
     }
-    if !*accepted && explanations.is_empty() {
-        out += "<p>No known mistake explains it.</p>\n";
+
+    /// Renders the smallest scenes.
+    fn smallest(&self) -> String {
+        let Diagnosis { cases, smallest: small, .. } = self.page.diagnosis;
+        let small = small.iter().zip(&self.page.cards[cases.len()..]).zip(1..);
+        small.map(|((small, card), number)| smallest::article(small, card.as_ref(), number)).collect()
     }
-    let mistakes = mistakes(explanations, card.is_some_and(Card::has_values));
-    out += &card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
-    out += "</details>\n";
-    out += &card.map(|card| card.data(&key)).unwrap_or_default();
-    out + "</article>\n"
+
+    /// Returns the traces; the most telling one is open.
+    fn traces(&self) -> Vec<Trace<'_>> {
+        let Diagnosis { cases, common, .. } = self.page.diagnosis;
+        let all: Vec<ExplainedCase<'_>> = cases.iter().zip(self.page.cards.iter().map(Option::as_ref)).collect();
+        let wrong = (0..all.len()).filter(|&number| !cases[number].accepted);
+        let first = wrong.min_by_key(|&number| telling(all[number], common));
+        let trace = |(number, (case, card)): (usize, ExplainedCase<'_>)| {
+            let key = key(&format!("{number} {}", case.scene));
+            let mistakes = mistakes(&case.explanations, card.is_some_and(Card::has_values));
+            let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
+            let motion = card.map(|card| card.data(&key)).unwrap_or_default();
+            Trace { case: &cases[number], key, open: first == Some(number), shown, motion }
+        };
+        all.into_iter().enumerate().map(trace).collect()
+    }
+}
+
+/// Renders a mistake that explains several traces.
+fn mistakes_of(one: &Explanation) -> String {
+    mistakes(std::slice::from_ref(one), false)
 }

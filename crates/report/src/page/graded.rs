@@ -3,7 +3,8 @@ use super::{
     Card,
     case::mistakes,
     document,
-    markup::{note, table, text},
+    markup::{count_scenes, note, text},
+    rendered,
     room::{self, OUTPUTS, Room},
     script, smallest,
 };
@@ -16,11 +17,14 @@ use crate::{
     number::counted,
     words,
 };
-use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict, Visibility, located::LocatedFailure};
+use askama::Template;
+use fosssim_findings::{
+    Build, Grade, GroupGrade, SceneGrade, Verdict, Visibility, located::LocatedFailure, smallest::SmallestScene,
+};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
-use std::{borrow::Cow, fmt::Write};
+use std::borrow::Cow;
 
 /// The greatest number of characters shown of a program's output in a scene.
 const OUTPUT: usize = 2_000;
@@ -58,108 +62,105 @@ impl GradePage<'_> {
         };
         let grade = shown.as_ref();
         let told = self.cards(grade);
-        let mut body = self.head(grade, &told);
-        let has_scenes = grade.unfit().is_none();
-        if has_scenes {
-            body += &self.smallest(grade);
-            body += &scenes(grade, &told);
-        }
+        let tells_who =
+            self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
+        let content = GradeContent {
+            page: self,
+            grade,
+            rooms: room::share_out(told.iter().map(|(_, card)| card.as_ref())),
+            has_scenes: grade.unfit().is_none(),
+            tells_who,
+            columns: if tells_who { 6 } else { 5 },
+            told,
+        };
         // The viewer is most of a page without cards.
-        let script = if has_scenes && !told.is_empty() { script() } else { "" };
-        document(&format!("{}: {}", grade.submission, grade.verdict.name()), &body, script)
-    }
-
-    /// Renders the smallest scenes.
-    fn smallest(&self, grade: &Grade) -> String {
-        let all = grade.smallest.iter().zip(1..);
-        let all: String = all
-            .map(|(small, number)| smallest::article(small, (self.card)(small.card.as_deref()).as_ref(), number))
-            .collect();
-        if all.is_empty() { all } else { format!("<h2>The smallest scenes on which it is wrong</h2>\n{all}") }
+        let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
+        document(&format!("{}: {}", grade.submission, grade.verdict.name()), &rendered(&content), script)
     }
 
     /// Returns the scenes that have a card, the clearest first and the others in their order.
     fn cards<'g>(&self, grade: &'g Grade) -> Vec<(&'g SceneGrade, Option<Card>)> {
         let scenes = grade.scenes().filter(|scene| is_told(scene));
         let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene.card.as_deref()))).collect();
-        let likely = likely(grade);
+        let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
         let first = (0..told.len()).min_by_key(|&place| telling(told[place].0, told[place].1.as_ref(), &likely));
         if let Some(first) = first {
             told[..=first].rotate_right(1);
         }
         told
     }
+}
 
-    fn head(&self, grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
-        let look = if grade.verdict.is_accepted() { "good" } else { "bad" };
-        let reached = match grade.points {
-            Some(reached) => score(reached, grade.max_points) + &extra(grade),
-            None => no_points(grade).unwrap_or_default(),
-        };
-        let mut out = String::new();
-        if let Some(class) = self.class {
-            let _ = writeln!(out, "<p><a href=\"{}\">The class</a></p>", text(class));
-        }
-        let _ = writeln!(
-            out,
-            "<h1>{}: <span class=\"chip {look}\">{}</span> {}</h1>\n<p class=\"names\">suite {}, {}</p>",
-            text(&one_line(&grade.submission)),
-            grade.verdict.name(),
-            text(&reached),
-            text(&one_line(&grade.suite)),
-            text(&books(grade)),
-        );
-        for warning in &grade.warnings {
-            let _ = writeln!(out, "<p class=\"bad\">Warning: {}</p>", text(warning));
-        }
-        if !grade.same_program.is_empty() {
-            let names = one_line(&grade.same_program.join(", "));
-            let _ = writeln!(out, "<p>The same program, byte for byte: {}</p>", text(&names));
-        }
-        if let Some(build) = grade.failed_build() {
-            let _ = writeln!(out, "<h2>The build</h2>\n<p>{}</p>", text(&words::build(&build.end)));
-            out += &printed("What it printed", &build.output, &mut OUTPUTS.clone());
-        } else if let Some(unfit) = words::unfit(grade) {
-            let _ = writeln!(out, "<p>{}</p>", text(&unfit));
-        }
-        if self.reader == Audience::Student && grade.groups.len() < self.grade.groups.len() {
-            out += "<p class=\"hint\">Points, verdict and likely mistakes are those of the groups on this page. The grade has \
-                    others, too.</p>\n";
-        }
-        let changes: String = change_lines(grade).iter().map(|(_, line)| format!("<li>{}</li>", text(line))).collect();
-        if !changes.is_empty() {
-            let _ = writeln!(out, "<h2>Since the earlier grading</h2>\n<ul class=\"card\">{changes}</ul>");
-        }
-        out.extend(grade.located.as_ref().map(located));
-        out += "<div class=\"split halves\">\n";
-        // A fault of the submission itself explains everything.
-        let likely = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
-        if !likely.is_empty() {
-            let wrong = wrong_scenes(grade);
-            let plural = if likely.len() == 1 { "" } else { "s" };
-            let _ = writeln!(out, "<section>\n<h2>Likely mistake{plural}</h2>\n<div class=\"mistakes\">");
-            for (mistake, explained) in likely {
-                let named: Vec<_> =
-                    told.iter().filter(|(scene, _)| is_named_in(&mistake, &scene.explanations)).collect();
-                let shows = named
-                    .iter()
-                    .min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(&mistake)));
-                let verb = if mistake.is_unexplained() { "In" } else { "Explains" };
-                let forms = words::explanation::forms(&mistake);
-                let _ = writeln!(
-                    out,
-                    "<section class=\"card mistake\"><p class=\"lead\">{}</p>{}<p>{verb} {explained} of \
-                    {wrong}.{}{}{}</p></section>",
-                    text(&words::explanation::what_or(&mistake)),
-                    forms.iter().map(|form| format!("<p>{}</p>", text(form))).collect::<String>(),
-                    worth(grade, &mistake).map_or_else(String::new, |worth| format!(" Mending it is {worth}.")),
-                    shows.map_or_else(String::new, |(scene, _)| format!(" Look at it in {}.", link(scene))),
-                    note(grade.note(&mistake)),
-                );
-            }
-            out += "</div></section>\n";
-        }
-        out + &groups(&grade.groups, told, self.reader) + "</div>\n"
+/// The content of the file.
+#[derive(Template)]
+#[template(path = "graded.html")]
+struct GradeContent<'a> {
+    page: &'a GradePage<'a>,
+    /// The part of the grade that the reader may see.
+    grade: &'a Grade,
+    /// The scenes with something to tell, and which parts of their cards fit.
+    told: Vec<(&'a SceneGrade, Option<Card>)>,
+    rooms: Vec<Room>,
+    has_scenes: bool,
+    /// Whether the table of groups says who sees them; its columns.
+    tells_who: bool,
+    columns: usize,
+}
+
+/// The details of a scene.
+struct Article<'a> {
+    scene: &'a SceneGrade,
+    key: String,
+    lines: Vec<String>,
+    /// The card, as far as there is room for it, and the program's output.
+    shown: String,
+    outputs: String,
+    motion: String,
+}
+
+impl GradeContent<'_> {
+    /// Returns the likely mistakes with the number of scenes that each explains. A fault of the submission itself
+    /// explains everything.
+    fn likely(&self) -> Vec<(Explanation, usize)> {
+        if self.has_scenes { likely_mistakes(self.grade) } else { Vec::new() }
+    }
+
+    /// Returns the scene that shows a mistake best.
+    fn shows(&self, mistake: &Explanation) -> Option<&SceneGrade> {
+        let named = self.told.iter().filter(|(scene, _)| is_named_in(mistake, &scene.explanations));
+        let best = named.min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(mistake)));
+        best.map(|(scene, _)| *scene)
+    }
+
+    /// Returns the first scene of a group that has something to tell.
+    fn first_of(&self, group: &GroupGrade) -> Option<&SceneGrade> {
+        let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
+        self.told.iter().map(|(scene, _)| *scene).find(|scene| is_here(scene))
+    }
+
+    /// Renders the smallest scenes.
+    fn smallest(&self) -> String {
+        let card = |small: &SmallestScene| (self.page.card)(small.card.as_deref());
+        let all = self.grade.smallest.iter().zip(1..);
+        all.map(|(small, number)| smallest::article(small, card(small).as_ref(), number)).collect()
+    }
+
+    /// Returns the cards of the scenes that have something to tell.
+    fn told_cards(&self) -> impl Iterator<Item = Option<&Card>> {
+        self.told.iter().map(|(_, card)| card.as_ref())
+    }
+
+    /// Returns the details of each scene.
+    fn articles(&self) -> Vec<Article<'_>> {
+        let mut outputs = if self.grade.shows_output { OUTPUTS } else { 0 };
+        let told = self.told.iter().zip(&self.rooms);
+        told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs)).collect()
+    }
+
+    /// Returns how many scenes that have nothing to tell are accepted, and all of them.
+    fn rest(&self) -> (usize, Vec<&SceneGrade>) {
+        let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_told(scene)).collect();
+        (rest.iter().filter(|scene| scene.verdict.is_accepted()).count(), rest)
     }
 }
 
@@ -167,11 +168,6 @@ impl GradePage<'_> {
 pub(super) fn located(found: &LocatedFailure) -> String {
     let words = text(&one_line(&words::located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
-}
-
-/// Returns the likely mistakes of all scenes together.
-fn likely(grade: &Grade) -> Vec<Explanation> {
-    likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect()
 }
 
 /// Returns the rank of a scene among those to read first; the smallest rank comes first. The rank counts in this order:
@@ -188,47 +184,6 @@ fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (
 pub(super) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
     let named = likely.iter().position(|one| is_named_in(one, own));
     named.unwrap_or(likely.len() + usize::from(own.is_empty()))
-}
-
-/// Returns a link to a scene's card.
-fn link(scene: &SceneGrade) -> String {
-    format!("<a href=\"#scene-{}\">{}</a>", key(&scene.scene), text(&one_line(&scene.scene)))
-}
-
-fn scenes(grade: &Grade, told: &[(&SceneGrade, Option<Card>)]) -> String {
-    let rooms = room::share_out(told.iter().map(|(_, card)| card.as_ref()));
-    let mut out = String::new();
-    if !told.is_empty() {
-        out += "<h2>Scenes to look at</h2>\n";
-    }
-    out += &room::left_out(told.iter().map(|(_, card)| card.as_ref()), &rooms);
-    let mut outputs = if grade.shows_output { OUTPUTS } else { 0 };
-    for (number, ((scene, card), room)) in told.iter().zip(&rooms).enumerate() {
-        out += &article(scene, (card.as_ref(), *room), number == 0, &mut outputs);
-    }
-    let rest: Vec<&SceneGrade> = grade.scenes().filter(|scene| !is_told(scene)).collect();
-    if rest.is_empty() {
-        return out;
-    }
-    let accepted = rest.iter().filter(|scene| scene.verdict.is_accepted()).count() as u64;
-    let missing = rest.len() as u64 - accepted;
-    let mut words = format!("{} accepted", counted(accepted, "scene"));
-    if missing > 0 {
-        let _ = write!(words, ", {missing} not run");
-    }
-    let _ = writeln!(out, "<h2>The other scenes</h2>\n<details class=\"table\"><summary>{words}</summary>");
-    out += &table("scroll", "Other scenes", "", &["scene", "verdict", "points"]);
-    for scene in rest {
-        let _ = writeln!(
-            out,
-            "<tr><th scope=\"row\">{}</th><td>{}</td><td class=\"num\">{} of {}</td></tr>",
-            text(&one_line(&scene.scene)),
-            scene.verdict.name(),
-            reached(scene.points),
-            points(scene.max_points)
-        );
-    }
-    out + "</tbody></table></div></details>\n"
 }
 
 /// Returns the book that counts.
@@ -248,95 +203,59 @@ fn is_told(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
-fn groups(groups: &[GroupGrade], told: &[(&SceneGrade, Option<Card>)], reader: Audience) -> String {
-    let tells_who = reader == Audience::Staff && groups.iter().any(|group| group.visibility != Visibility::Visible);
-    let headings = ["group", "verdict", "#points", "#scenes accepted", "to look at", "who sees it"];
-    let headings = if tells_who { &headings[..] } else { &headings[..5] };
-    let mut out = "<section>\n<h2>Groups</h2>\n".to_owned() + &table("card scroll", "Groups", "stack", headings);
-    for group in groups {
-        let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
-        let first = told.iter().find(|(scene, _)| is_here(scene)).map_or_else(String::new, |(scene, _)| link(scene));
-        let who = match group.visibility {
-            _ if !tells_who => String::new(),
-            Visibility::Visible => "<td>everybody</td>".to_owned(),
-            Visibility::Hidden => "<td>staff</td>".to_owned(),
-            Visibility::AfterDueDate => "<td>students after the due date</td>".to_owned(),
-            Visibility::AfterPublished => "<td>students once grades are out</td>".to_owned(),
-        };
-        let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
-        let _ = writeln!(
-            out,
-            "<tr><th scope=\"row\">{}</th><td><span class=\"chip {}\">{}</span></td>\
-             <td class=\"num\" data-label=\"points\">{} of {}{}</td><td class=\"num\" data-label=\"scenes \
-                 accepted\">{accepted} of {}</td><td class=\"to\">{first}</td>{who}</tr>",
-            text(&one_line(&group.name)),
-            if group.verdict.is_accepted() { "good" } else { "bad" },
-            group.verdict.name(),
-            reached(group.points),
-            points(group.max_points),
-            if group.extra { " extra" } else { "" },
-            group.scenes.len(),
-        );
-        let columns = headings.len();
-        if group.note.is_some() {
-            let _ = writeln!(out, "<tr><td colspan=\"{columns}\">{}</td></tr>", note(group.note.as_ref()));
-        }
-        if let Some(speed) = &group.speed {
-            let _ = writeln!(out, "<tr><td colspan=\"{columns}\">{}</td></tr>", text(&speed_words(speed)));
-        }
+/// Returns the points of a grade, or why there are none.
+fn score_or_why(grade: &Grade) -> String {
+    match grade.points {
+        Some(reached) => score(reached, grade.max_points) + &extra(grade),
+        None => no_points(grade).unwrap_or_default(),
     }
-    out + "</tbody></table></div></section>\n"
 }
 
-fn article(scene: &SceneGrade, (card, room): (Option<&Card>, Room), open: bool, outputs: &mut usize) -> String {
-    let key = key(&scene.scene);
-    let look = if scene.verdict.is_accepted() { "good" } else { "bad" };
-    let mut out = format!(
-        "<article class=\"case\" id=\"scene-{key}\" data-case=\"{key}\" data-scene=\"{}\" aria-labelledby=\"title-{key}\">\n\
-         <details class=\"scene\"{}><summary><h3 id=\"title-{key}\"><span class=\"chip {look}\">{}</span> {}</h3> \
-         <span class=\"hint\">{} of {} points. {}</span></summary>\n",
-        text(&scene.scene),
-        if open { " open" } else { "" },
-        scene.verdict.name(),
-        text(&one_line(&scene.scene)),
-        reached(scene.points),
-        points(scene.max_points),
-        text(&one_line(&words::summary(scene))),
-    );
-    // A detail that a card shows with its values is not repeated.
-    let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
-    let details = words::details(scene).into_iter().skip(usize::from(is_shown));
-    let lines: Vec<String> = difference(scene).into_iter().chain(details).collect();
-    if !lines.is_empty() {
-        let _ = writeln!(
-            out,
-            "<ul>{}</ul>",
-            lines.iter().map(|line| format!("<li>{}</li>", text(line))).collect::<String>()
-        );
+/// Returns the output of a build.
+fn printed_by(build: &Build) -> String {
+    printed("What it printed", &build.output, &mut OUTPUTS.clone())
+}
+
+/// Returns who sees groups of this kind.
+const fn readers(visibility: Visibility) -> &'static str {
+    match visibility {
+        Visibility::Visible => "everybody",
+        Visibility::Hidden => "staff",
+        Visibility::AfterDueDate => "students after the due date",
+        Visibility::AfterPublished => "students once grades are out",
     }
-    let mistakes = mistakes(&scene.settled, is_shown);
-    match (card, room) {
-        (None, _) => out += &mistakes,
-        (Some(card), Room::Words) if card.sizes().0 > 0 => {
-            out += &mistakes;
-            out += "<p class=\"hint\">This page has no room for the pictures and the motion.</p>\n";
-        }
-        (Some(card), _) => {
-            if room == Room::Pictures && card.sizes().1 > 0 {
-                out += "<p class=\"hint\">This page has no room for the motion.</p>\n";
-            }
-            out += &card.html(&key, &mistakes);
-        }
+}
+
+/// Returns how many scenes of a group are accepted.
+fn accepted_of(group: &GroupGrade) -> usize {
+    group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count()
+}
+
+impl<'a> Article<'a> {
+    /// Returns the details of a scene, cut to the room that is left for its card and its output.
+    fn new(scene: &'a SceneGrade, card: Option<&Card>, room: Room, room_of_outputs: &mut usize) -> Self {
+        let key = key(&scene.scene);
+        // A detail that a card shows with its values is not repeated.
+        let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
+        let details = words::details(scene).into_iter().skip(usize::from(is_shown));
+        let mistakes = mistakes(&scene.settled, is_shown);
+        let no_room = |what: &str| format!("<p class=\"hint\">This page has no room for {what}.</p>\n");
+        let shown = match (card, room) {
+            (None, _) => mistakes,
+            (Some(card), Room::Words) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
+            (Some(card), Room::Pictures) if card.sizes().1 > 0 => no_room("the motion") + &card.html(&key, &mistakes),
+            (Some(card), _) => card.html(&key, &mistakes),
+        };
+        let motion = match (card, room) {
+            (Some(card), Room::Exact) => card.data(&key),
+            (Some(card), Room::Rounded) => card.rounded(&key),
+            _ => String::new(),
+        };
+        let outputs = printed("Standard output", &scene.stdout, room_of_outputs)
+            + &printed("Standard error", &scene.stderr, room_of_outputs);
+        let lines = difference(scene).into_iter().chain(details).collect();
+        Self { scene, key, lines, shown, outputs, motion }
     }
-    out += &printed("Standard output", &scene.stdout, outputs);
-    out += &printed("Standard error", &scene.stderr, outputs);
-    out += "</details>\n";
-    out += &match (card, room) {
-        (Some(card), Room::Exact) => card.data(&key),
-        (Some(card), Room::Rounded) => card.rounded(&key),
-        _ => String::new(),
-    };
-    out + "</article>\n"
 }
 
 /// Returns a key that another scene's name does not have.

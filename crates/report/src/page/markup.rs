@@ -1,6 +1,6 @@
 //! Hostile text in HTML: it stays text.
 use crate::foreign::is_unseen;
-use crate::number::{beside, general};
+use crate::number::{beside, counted, general};
 use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
@@ -33,6 +33,21 @@ pub(super) fn text(raw: &str) -> String {
     out
 }
 
+/// The escaper of templates.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PageText;
+
+impl askama::filters::Escaper for PageText {
+    fn write_escaped_str<W: Write>(&self, mut out: W, raw: &str) -> std::fmt::Result {
+        out.write_str(&text(raw))
+    }
+}
+
+/// Returns a number of scenes with its noun.
+pub(super) fn count_scenes(count: usize) -> String {
+    counted(count as u64, "scene")
+}
+
 /// Returns a course's own words on something, with a link that can be followed.
 pub(super) fn note(note: Option<&CourseNote>) -> String {
     let Some(note) = note else { return String::new() };
@@ -49,21 +64,6 @@ pub(super) fn formula(line: &str) -> String {
 /// Writes JSON for a data block: nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
-}
-
-/// Returns the beginning of a table up to its first row, in a box that scrolls: the box's classes and name, the table's
-/// classes, and the headings of its columns. Those of numbers begin with `#`.
-pub(super) fn table(look: &str, label: &str, class: &str, headings: &[&str]) -> String {
-    let class = if class.is_empty() { String::new() } else { format!(" class=\"{class}\"") };
-    let heading = |name: &&str| match name.strip_prefix('#') {
-        Some(name) => format!("<th scope=\"col\" class=\"num\">{name}</th>"),
-        None => format!("<th scope=\"col\">{name}</th>"),
-    };
-    let headings: String = headings.iter().map(heading).collect();
-    format!(
-        "<div class=\"{look}\" tabindex=\"0\" role=\"region\" aria-label=\"{label}\"><table{class}><thead><tr>{headings}\
-         </tr></thead><tbody>\n"
-    )
 }
 
 /// Returns a number in a table.

@@ -27,6 +27,7 @@ pub use explained::ExplainedPage;
 pub use graded::{Audience, GradePage};
 
 use super::check::Check;
+use askama::Template;
 use fosssim_evidence::{Evidence, Track};
 use fosssim_findings::Hints;
 use fosssim_model::scene::Scene;
@@ -114,6 +115,11 @@ fn document(title: &str, body: &str, script: &str) -> String {
          {script}</body>\n</html>\n",
         env!("CARGO_PKG_VERSION"),
     )
+}
+
+/// Renders a template, which can't fail: it is written to memory.
+fn rendered(template: &impl Template) -> String {
+    template.render().unwrap_or_default()
 }
 
 /// Returns the digest by which a policy allows a script or a style sheet.
