@@ -31,11 +31,12 @@ impl System<'_> {
 /// Fills the matrix with `M + h (Hv + h Hx)` at positions `x` and velocities `v`; the rows and columns of fixed
 /// particles become those of the identity.
 pub(crate) fn assemble(matrix: &mut DMatrix<f64>, bodies: &Bodies, forces: &Forces, h: f64, x: &[f64], v: &[f64]) {
-    matrix.fill(0.0);
+    let scale = |matrix: &mut DMatrix<f64>| matrix.as_mut_slice().iter_mut().for_each(|entry| *entry *= h);
+    matrix.as_mut_slice().fill(0.0);
     forces.add_position_hessians(bodies, x, v, matrix);
-    *matrix *= h;
+    scale(matrix);
     forces.add_velocity_hessians(bodies, x, matrix);
-    *matrix *= h;
+    scale(matrix);
     for index in 0..matrix.nrows() {
         matrix[(index, index)] += bodies.masses[index / 2];
     }
