@@ -27,29 +27,29 @@ impl Student {
     }
 
     /// Returns the mistakes, which come before all free places.
-    pub(super) fn mistakes(self) -> impl Iterator<Item = Mistake> {
-        self.mistakes.into_iter().map_while(|mistake| mistake)
+    pub(super) fn mistakes(&self) -> impl Iterator<Item = Mistake> {
+        self.mistakes.iter().map_while(|mistake| *mistake)
     }
 
     /// Returns whether the student makes this mistake.
-    pub fn makes(self, mistake: impl Into<Mistake>) -> bool {
+    pub fn makes(&self, mistake: impl Into<Mistake>) -> bool {
         let mistake = mistake.into();
         self.mistakes().any(|made| made == mistake)
     }
 
     /// Returns whether the student makes no mistake of the catalogue.
-    pub(super) fn makes_none(self) -> bool {
+    pub(super) fn makes_none(&self) -> bool {
         self.mistakes[0].is_none()
     }
 
     /// Returns the mistake of these parts of the assignment, if many are distinguished in one place; the first part
     /// that has one counts.
-    pub fn mistake_in(self, areas: &[Area]) -> Option<Mistake> {
+    pub fn mistake_in(&self, areas: &[Area]) -> Option<Mistake> {
         areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
     /// Returns the first of these mistakes that the student makes.
-    pub(super) fn mistake_among(self, rows: &[Mistake]) -> Option<Mistake> {
+    pub(super) fn mistake_among(&self, rows: &[Mistake]) -> Option<Mistake> {
         self.mistakes().find(|mistake| rows.contains(mistake))
     }
 
@@ -62,7 +62,7 @@ impl Student {
 
     /// Returns whether the particle-edge approach is mathematically right, not the supplied one.
     #[must_use]
-    pub fn approach_is_right(self) -> bool {
+    pub fn approach_is_right(&self) -> bool {
         self.right_approach || self.makes(Mistake::QuinticRightRearranged)
     }
 }

@@ -31,16 +31,16 @@ impl TermPart {
 
 impl Student {
     /// Returns the slips in a quantity, or in one that it is part of.
-    pub fn slips(self, term: Term) -> impl Iterator<Item = Slip> {
+    pub fn slips(&self, term: Term) -> impl Iterator<Item = Slip> {
         self.edits().filter(move |edit| edit.term.covers(term)).map(|edit| edit.slip)
     }
 
     /// Returns whether the student makes this slip in the quantity.
-    pub fn slips_by(self, term: Term, slip: Slip) -> bool {
-        self.slips(term).any(|made| made == slip)
+    pub fn slips_by(&self, term: Term, slip: Slip) -> bool {
+        self.edits().any(|edit| edit.slip == slip && edit.term.covers(term))
     }
 
-    fn edits(self) -> impl Iterator<Item = Edit> {
+    fn edits(&self) -> impl Iterator<Item = Edit> {
         self.mistakes().filter_map(|mistake| match mistake {
             Mistake::Step(StepMistake::Edit(edit)) => Some(edit),
             _ => None,

@@ -36,8 +36,9 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
         a[k * size + k] += weight * if has_unit_mass { 1.0 } else { world.masses[k] };
     }
     let keeps_rows = makes(Slip::RowsOfFixed) || makes(Slip::FixedForgotten);
+    let clears = if makes(Slip::DiagonalOfFixed) { 0 } else { size };
     for k in (0..size).filter(|k| world.fixed(k / 2) && !keeps_rows) {
-        for other in (0..size).filter(|_| !makes(Slip::DiagonalOfFixed)) {
+        for other in 0..clears {
             a[k * size + other] = 0.0;
             a[other * size + k] = 0.0;
         }
@@ -97,6 +98,7 @@ impl HessianSum<'_> {
     /// Adds `block` on the diagonal blocks of particles `a` and `b`, and subtracts it off the diagonal.
     fn add_pair(&mut self, term: Term, (a, b): (usize, usize), block: &Matrix2, length: f64) {
         let student = self.world.student;
+        let has_slips = student.slips(term).next().is_some();
         for (index, (row, column)) in [(a, a), (b, b), (a, b), (b, a)].into_iter().enumerate() {
             let is_left_out = |slip: Slip| match slip {
                 Slip::SecondOnly => index == 0,
@@ -105,14 +107,15 @@ impl HessianSum<'_> {
                 Slip::OneHalf => index == 3,
                 _ => false,
             };
-            if student.slips(term).any(is_left_out) {
+            if has_slips && student.slips(term).any(is_left_out) {
                 continue;
             }
             let is_beside = index > 1;
-            let sign =
-                if is_beside != (is_beside && student.slips_by(term, Slip::OffDiagonalSign)) { -1.0 } else { 1.0 };
-            let weight = self.weight * sign * self.world.whole_weight(term, row, length);
-            let is_assigned = student.slips_by(term, Slip::Assigned);
+            let is_other = has_slips && is_beside && student.slips_by(term, Slip::OffDiagonalSign);
+            let sign = if is_beside != is_other { -1.0 } else { 1.0 };
+            let slipped = if has_slips { self.world.whole_weight(term, row, length) } else { 1.0 };
+            let weight = self.weight * sign * slipped;
+            let is_assigned = has_slips && student.slips_by(term, Slip::Assigned);
             for (r, entries) in block.iter().enumerate() {
                 for (c, entry) in entries.iter().enumerate() {
                     let place = &mut self.entries[(2 * column + c) * self.size + 2 * row + r];
