@@ -28,7 +28,7 @@ use std::{
 /// Scenes that are tried for one cause, the smallest first.
 const MOST_SCENES: usize = 4;
 /// Scenes with more bodies are not made smaller: their traces are too long to be kept whole.
-const MOST_BODIES: usize = 400;
+pub const MOST_BODIES: usize = 400;
 /// Causes without a name of which a scene is made.
 const MOST_UNNAMED: usize = 2;
 

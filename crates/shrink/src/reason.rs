@@ -2,7 +2,7 @@
 use fosssim_ended::RunEnd;
 use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::FailureKind};
 use fosssim_judge::replay::{Options, judge};
-use fosssim_mistakes::diagnose::{self, is_named_in, shows};
+use fosssim_mistakes::diagnose::{self, is_named_in, reproduces, shows};
 use fosssim_model::{scene::Scene, sim::PairKind};
 use fosssim_student::find;
 
@@ -86,7 +86,10 @@ impl WrongReason {
     #[must_use]
     pub fn leads(&self, scene: &Scene, seen: &Observation) -> bool {
         let Self::Mistake(mistake) = self else { return self.holds(scene, seen) };
+        let keys = known_keys(mistake);
         FailureKind::from_end(&seen.ended).is_none()
+            // Most attempts end here, long before every mistake of the catalogue was tried.
+            && (keys.is_empty() || reproduces(scene, &seen.trace, &keys))
             && matches!(findings(scene, &seen.trace), Some(TraceFault::Wrong(_)))
             && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.said() == mistake.said())
     }
@@ -95,11 +98,19 @@ impl WrongReason {
     /// catalogue is named.
     pub(crate) fn shows(&self, scene: &Scene) -> Option<bool> {
         let Self::Mistake(mistake) = self else { return None };
-        let keys = std::iter::once(&mistake.key).chain(&mistake.same_as);
-        let mut rows = keys.take(1 + 2 * usize::from(mistake.is_unfinished())).filter(|key| find(key).is_some());
-        let first = rows.next()?;
-        Some(shows(scene, first) || rows.any(|key| shows(scene, key)))
+        let keys = known_keys(mistake);
+        let most = if mistake.is_unfinished() { 2 } else { 1 };
+        (!keys.is_empty()).then(|| keys.iter().take(most).any(|key| shows(scene, key)))
     }
+}
+
+/// Returns the rows of the catalogue that a mistake names, its own first; none where it is no row itself, nor a stage
+/// that is not written yet.
+fn known_keys(mistake: &Explanation) -> Vec<&str> {
+    let keys = std::iter::once(&mistake.key).chain(&mistake.same_as);
+    let is_asked = |key: &&str| find(key).is_some();
+    let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
+    keys.map(String::as_str).filter(|_| is_named).filter(is_asked).collect()
 }
 
 /// A fault of a trace by the fair rules.

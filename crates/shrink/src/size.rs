@@ -1,6 +1,11 @@
 //! The size of a scene: the amount that its reader has to take in.
-use crate::numbers::numbers;
+use crate::{clear::run, numbers::numbers};
 use fosssim_model::scene::{Collision, Integrator, Scene};
+
+/// The reference is asked about scenes of at most this many bodies and steps.
+const FEW: usize = 8;
+/// Digits of a number that is computed by hand.
+const HANDY: usize = 3;
 
 /// The size of a scene. The first field that differs decides which of two scenes is smaller.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -15,7 +20,10 @@ pub struct SceneSize {
     pub forces: usize,
     /// Features that are not the plainest: the integrator, the kind of collision handling, fixed bodies.
     pub features: usize,
-    /// Digits of all numbers that are not plain, such as a mass of 1.
+    /// Collisions that the reference detects.
+    pub collisions: usize,
+    /// Digits of all numbers that are not plain, such as a mass of 1, and those of the reference's last state as far as
+    /// they are more than anybody computes by hand.
     pub digits: usize,
     /// The numbers' magnitudes and signs: among equals, 1 before 7 and 7 before -7.
     pub magnitude: u64,
@@ -40,6 +48,7 @@ impl SceneSize {
             Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
             Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
         };
+        let (collisions, computed) = outcome(scene);
         let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
         Self {
             steps: scene.steps(),
@@ -47,10 +56,21 @@ impl SceneSize {
             objects: scene.edges.len() + scene.half_planes.len(),
             forces: scene.forces.len(),
             features: effort(scene.integrator) + handling + fixed,
-            digits: written,
+            collisions,
+            digits: written + computed,
             magnitude,
         }
     }
+}
+
+/// Returns how many collisions the reference detects, and the digits of its last state that are too many.
+fn outcome(scene: &Scene) -> (usize, usize) {
+    if scene.particles.len().max(scene.steps() as usize) > FEW {
+        return (0, 0);
+    }
+    let Some((decisions, end)) = run(scene) else { return (usize::MAX, 0) };
+    let too_many = |value: &f64| written_digits(*value).saturating_sub(HANDY);
+    (decisions.iter().filter(|(_, collides)| *collides).count(), end.iter().map(too_many).sum())
 }
 
 /// Returns a rank of integrators: the work of a step by hand.

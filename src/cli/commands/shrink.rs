@@ -29,13 +29,14 @@ use crate::{
         config::Hints,
         located::FailureKind,
         smallest::{
-            HandComputation, QUICK, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient,
+            HandComputation, MOST_BODIES, QUICK, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene,
+            causes, impatient,
         },
     },
     together::told::cut,
     trace::{Frame, Layout, Reader},
 };
-use anyhow::Result;
+use anyhow::{Result, bail};
 use std::{path::Path, time::Duration};
 
 /// Runs at one time.
@@ -46,11 +47,15 @@ pub(super) const AT_THE_END: ShrinkLimits = ShrinkLimits { jobs: JOBS, ..QUICK }
 
 pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
-    let tasks = match (&arguments.scene, &arguments.suite) {
+    let mut tasks = match (&arguments.scene, &arguments.suite) {
         (Some(scene), _) => named_tasks(std::slice::from_ref(scene))?,
         (None, Some(_)) => program.suite_tasks(),
         (None, None) => program.tasks(&[])?,
     };
+    tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
+    if tasks.is_empty() {
+        bail!("`shrink` needs a scene with at most {MOST_BODIES} bodies");
+    }
     let drawing = Drawing { hints: Hints::Full, has_pictures: false };
     let Some(mut examined) = program.examine(tasks, drawing)? else { return Ok(exit::INTERRUPTED) };
     if examined.diagnosis.accepted() {

@@ -30,7 +30,7 @@ pub use fosssim_findings::explanation::{
 use fosssim_findings::explanation::{about, fault, guess};
 pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
 pub use heads::several;
-pub use known::{can_show, known, shows};
+pub use known::{can_show, known, reproduces, shows};
 pub use naming::is_named_in;
 pub use near::{PairTrait, pair_traits};
 pub use not_finite::not_finite;
