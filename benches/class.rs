@@ -1,7 +1,7 @@
 //! How a class scales with the number of jobs: the same submissions graded by one job and by more, as ratios to one.
 //!
-//! `cargo bench --bench class` prints Markdown. `cargo bench --bench class -- 156 t2m2` grades that many programs on that
-//! suite instead. On a machine with few cores the rows of more jobs are missing: they would show nothing.
+//! `cargo bench --bench class` prints Markdown. `cargo bench --bench class -- 156 t2m2` grades that many programs on
+//! that suite instead. On a machine with few cores the rows of more jobs are missing: they would show nothing.
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -9,7 +9,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// What grading a class took.
+/// The time, files and memory of a grading.
 struct Measured {
     wall: Duration,
     user: Duration,
@@ -96,7 +96,7 @@ fn walk(folder: &Path) -> usize {
     entries.map(|path| if path.is_dir() { walk(&path) } else { 1 }).sum()
 }
 
-/// What all children have used so far.
+/// Resources that all children have used so far.
 fn children() -> libc::rusage {
     // SAFETY: a zeroed rusage is a valid value, and getrusage only writes to it.
     unsafe {

@@ -135,8 +135,8 @@ impl Decomposition<'_> {
         }
     }
 
-    /// Subtracts multiples of row k from the rows below, and leaves the multipliers in column k. Where row k has a zero,
-    /// a column stays as it is, if no entry is a negative zero: no difference of others is one.
+    /// Subtracts multiples of row k from the rows below, and leaves the multipliers in column k. A column with a zero
+    /// in row k stays as it is, unless an entry is a negative zero: no difference of others is one.
     #[inline(always)]
     fn eliminate<S: Simd>(&mut self, simd: S, k: usize, may_skip: bool) {
         let (n, width) = (self.n, Lanes::<S>::COUNT);

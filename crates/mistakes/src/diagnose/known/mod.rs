@@ -54,8 +54,8 @@ pub fn known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     known_or_open(&mut reference, scene, scan).explanations
 }
 
-/// Returns whether a right program with one of these mistakes of the catalogue, and no other, makes all wrong steps of a
-/// trace that are kept. Asks much less than [`known`] does.
+/// Returns whether a right program with one of these mistakes of the catalogue, and no other, makes all wrong steps of
+/// a trace that are kept. Asks much less than [`known`] does.
 #[must_use]
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::whole(trace));
