@@ -3,7 +3,7 @@
 use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
     scene::{self, LoadedScene, Scene},
-    trace::{Frame, Layout, Reader},
+    trace::{Frame, Label, Layout, Reader, labels},
 };
 use fosssim_num::vector::Vec2;
 use fosssim_report::problems;
@@ -44,26 +44,30 @@ fn read(name: &str, xml: &[u8]) -> PyResult<Scene> {
 mod _native {
     use super::*;
 
-    /// Answers requests in their order, each a list of byte strings of which the first is JSON; so is each answer.
-    #[pyfunction]
-    fn ask<'py>(
-        py: Python<'py>,
-        requests: Vec<Vec<PyBackedBytes>>,
-        trace: PyBackedBytes,
-    ) -> PyResult<Vec<Vec<Bound<'py, PyBytes>>>> {
-        let joined: Vec<Vec<u8>> = requests
-            .iter()
-            .map(|request| parts::joined(&request.iter().map(|part| &part[..]).collect::<Vec<_>>()))
-            .collect();
-        let answers: Vec<Vec<u8>> = py.detach(|| {
-            let (mut session, host) = (PageSession::default(), Memory(&trace));
-            joined.iter().map(|request| session.answer(request, &host)).collect()
-        });
-        let cut = || PyValueError::new_err("the answer is cut");
-        answers
-            .iter()
-            .map(|answer| Ok(parts::split(answer).ok_or_else(cut)?.iter().map(|part| PyBytes::new(py, part)).collect()))
-            .collect()
+    /// Requests that are answered one after the other.
+    #[pyclass]
+    #[derive(Default)]
+    struct Session(PageSession);
+
+    #[pymethods]
+    impl Session {
+        #[new]
+        fn new() -> Self {
+            Self::default()
+        }
+
+        /// Answers a request about a trace: a list of byte strings of which the first is JSON; so is the answer.
+        fn ask<'py>(
+            &mut self,
+            py: Python<'py>,
+            request: Vec<PyBackedBytes>,
+            trace: PyBackedBytes,
+        ) -> PyResult<Vec<Bound<'py, PyBytes>>> {
+            let joined = parts::joined(&request.iter().map(|part| &part[..]).collect::<Vec<_>>());
+            let answer = py.detach(|| self.0.answer(&joined, &Memory(&trace)));
+            let parts = parts::split(&answer).ok_or_else(|| PyValueError::new_err("the answer is cut"))?;
+            Ok(parts.iter().map(|part| PyBytes::new(py, part)).collect())
+        }
     }
 
     /// Positions and velocities of all records that can be read, and why no more can.
@@ -93,7 +97,57 @@ mod _native {
         Ok((bytes(py, &positions)?, bytes(py, &velocities)?, fault))
     }
 
-    /// Returns the contents of a scene: duration, time step, steps; positions, velocities, masses and radii of
+    /// Returns the logs of all records that can be read: impulses, polynomials and coefficients, each packed as
+    /// `fosssim/__init__.py` says.
+    #[pyfunction]
+    fn logs<'py>(
+        py: Python<'py>,
+        name: &str,
+        xml: PyBackedBytes,
+        trace: PyBackedBytes,
+    ) -> PyResult<[Bound<'py, PyBytes>; 3]> {
+        let scene = read(name, &xml)?;
+        let [impulses, polynomials, coefficients] = py.detach(|| {
+            let layout = Layout::for_scene(&scene);
+            let mut reader = Reader::from_slice(&trace, layout);
+            let (mut frame, mut record, mut before) = (Frame::default(), 0_u64, None);
+            let (mut impulses, mut polynomials, mut coefficients) = (Vec::new(), Vec::new(), Vec::new());
+            // Of the step that the record belongs to.
+            let mut of_step: Vec<Label> = Vec::new();
+            while let Ok(true) = reader.next(&mut frame) {
+                let place = [record.to_ne_bytes(), u64::from(layout.step_of(record)).to_ne_bytes()].concat();
+                for impulse in &frame.impulses {
+                    impulses.extend_from_slice(&place);
+                    impulses.extend([impulse.kind, impulse.first, impulse.second].map(i32::to_ne_bytes).as_flattened());
+                    let numbers = [impulse.normal.x, impulse.normal.y, impulse.time];
+                    impulses.extend(numbers.map(f64::to_ne_bytes).as_flattened());
+                }
+                if let Some(before) = before.take() {
+                    of_step = labels(&scene, &before);
+                }
+                let is_known = of_step.len() >= frame.polynomials.len();
+                for (number, numbers) in frame.polynomials.iter().enumerate() {
+                    let label = of_step.get(number).filter(|_| is_known);
+                    let label = label.map_or([-1; 4], |Label { pair, number, .. }| {
+                        [pair.kind.code(), pair.first as i32, pair.second as i32, *number as i32]
+                    });
+                    polynomials.extend_from_slice(&place);
+                    polynomials.extend(label.map(i32::to_ne_bytes).as_flattened());
+                    let ends = [coefficients.len() / 8, numbers.len()].map(|count| (count as u64).to_ne_bytes());
+                    polynomials.extend(ends.as_flattened());
+                    coefficients.extend(numbers.iter().flat_map(|number| number.to_ne_bytes()));
+                }
+                if layout.polynomials && !layout.is_mid(record) {
+                    before = Some(frame.state.clone());
+                }
+                record += 1;
+            }
+            [impulses, polynomials, coefficients]
+        });
+        Ok([&impulses, &polynomials, &coefficients].map(|packed| PyBytes::new(py, packed)))
+    }
+
+    /// Returns the contents of a scene: duration, time step, steps, records of each; positions, velocities, masses and radii of
     /// particles as doubles; whether each is fixed, a byte each; the ends of edges as pairs.
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "a tuple that Python names")]
@@ -101,7 +155,7 @@ mod _native {
         py: Python<'py>,
         name: &str,
         xml: PyBackedBytes,
-    ) -> PyResult<((f64, f64, u32), [Bound<'py, PyBytes>; 4], Bound<'py, PyBytes>, Vec<(usize, usize)>)> {
+    ) -> PyResult<((f64, f64, u32, u32), [Bound<'py, PyBytes>; 4], Bound<'py, PyBytes>, Vec<(usize, usize)>)> {
         let scene = read(name, &xml)?;
         let particles = &scene.particles;
         let both = |vector: Vec2| [vector.x, vector.y];
@@ -114,7 +168,8 @@ mod _native {
         ];
         let fixed: Vec<u8> = particles.iter().map(|particle| u8::from(particle.fixed)).collect();
         let edges = scene.edges.iter().map(|edge| (edge.first, edge.second)).collect();
-        let times = (scene.duration, scene.time_step, scene.steps());
+        let per_step = Layout::for_scene(&scene).records_per_step();
+        let times = (scene.duration, scene.time_step, scene.steps(), per_step);
         Ok((times, numbers, PyBytes::new(py, &fixed), edges))
     }
 }

@@ -7,13 +7,14 @@ import subprocess
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 import fosssim
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENE = "asset:ContinuousTimeTests/spinning-edge-sweeps-balls"
-FLAWED = ROOT / "examples/traces/flawed.bin"
+FLAWED = f"{SCENE}/flawed"
 
 
 def program(*arguments: str) -> bytes:
@@ -46,7 +47,7 @@ def test_a_reference_is_accepted_and_its_arrays_lie_in_its_bytes():
 
 def test_a_wrong_trace_has_its_mistake_by_name():
     scene = fosssim.Scene(SCENE)
-    report = fosssim.check(scene, FLAWED)
+    report = fosssim.check(SCENE, FLAWED)
     assert not report.accepted and report.verdict == "wrong answer"
     assert report.steps == 24 and report.wrong_steps[0] == 2 and len(report.wrong_steps) == 23
     assert report.findings[0].count > 0 and "particle 2" in report.findings[0].text
@@ -58,9 +59,45 @@ def test_reports_and_recordings_are_those_of_the_program(tmp_path):
     written = tmp_path / "reference.bin"
     program("simulate", SCENE, "--output", str(written))
     assert fosssim.simulate(fosssim.Scene(SCENE)).data == written.read_bytes()
-    printed = json.loads(program("check", SCENE, "examples/traces/flawed.bin", "--format", "json"))
-    trace = fosssim.Trace(fosssim.Scene(SCENE), FLAWED, name="examples/traces/flawed.bin")
-    assert fosssim.check(trace.scene, trace).data == printed
+    printed = json.loads(program("check", SCENE, FLAWED, "--format", "json"))
+    report = fosssim.check(SCENE, fosssim.Trace(FLAWED))
+    assert report.data == printed
+    assert report.html.encode() == program("check", SCENE, FLAWED, "--format", "html")
+
+
+def test_logs_are_arrays_and_tables():
+    trace = fosssim.Trace(FLAWED)
+    assert np.array_equal(trace.times, trace.steps * trace.scene.time_step) and trace.steps[-1] == trace.scene.steps
+    polynomials = pd.DataFrame(trace.polynomials)
+    # Two for a pair of particles, four for a particle and an edge, in every pass.
+    of_pairs = polynomials.groupby(["record", "kind"]).size()
+    assert of_pairs[1, 0] % 12 == 0 and of_pairs[1, 1] % 8 == 0 and len(of_pairs) == 2 * 2 * trace.scene.steps
+    assert polynomials["size"].sum() == len(trace.coefficients)
+    assert len(trace.polynomial(0)) == polynomials["size"][0]
+    impulses = pd.DataFrame(trace.impulses)
+    assert impulses.loc[0, ["record", "step", "kind", "first", "second"]].tolist() == [17, 9, 1, 2, 0]
+    shown = json.loads(program("trace", "show", SCENE, FLAWED, "--step", "9", "--format", "json"))
+    assert impulses["time"][0] == shown["records"][0]["impulses"][0]["time"]
+    table = pd.DataFrame(trace.table())
+    assert np.array_equal(table[table["particle"] == 2]["vy"], trace.velocities[:, 2, 1])
+
+
+def test_a_folder_of_traces_has_a_grade(tmp_path):
+    names = [name[len("asset:") :] for name in fosssim.scenes() if name.startswith("asset:ImpulsesTests/")]
+    (tmp_path / "ImpulsesTests").mkdir()
+    for name in names:
+        fosssim.simulate(f"asset:{name}").save(tmp_path / f"{name}.bin")
+    grade = fosssim.grade(tmp_path)
+    table = pd.DataFrame(grade.table)
+    assert grade.verdict == "no output" and 0 < grade.points == table["points"].sum() < grade.max_points == 100
+    assert set(table[table["verdict"] == "accepted"]["group"]) == {"ImpulsesTests"}
+    assert grade.data == json.loads(program("grade", "--traces", str(tmp_path), "--format", "json"))
+    (tmp_path / "course.toml").write_text(
+        f'schema = 1\nname = "One"\n[[group]]\nname = "A"\nscenes = ["asset:{names[0]}"]\npoints = 4\n'
+    )
+    assert fosssim.grade(tmp_path, tmp_path / "course.toml").points == 4
+    with pytest.raises(fosssim.Error, match="no suite t9"):
+        fosssim.grade(tmp_path, "t9")
 
 
 def test_a_cut_trace_holds_what_can_be_read():
@@ -73,9 +110,13 @@ def test_a_cut_trace_holds_what_can_be_read():
 
 
 def test_what_is_refused_says_so_in_the_programs_words(tmp_path):
-    with pytest.raises(fosssim.FosssimError, match="there is no scene"):
-        fosssim.Scene("asset:Nowhere/nothing")
-    with pytest.raises(fosssim.FosssimError, match=r"broken:1:\d+: "):
+    with pytest.raises(fosssim.Error, match="there is no scene .*; the nearest are asset:ContinuousTimeTests/head-on"):
+        fosssim.Scene("asset:ContinuousTimeTests/hed-on")
+    with pytest.raises(fosssim.Error, match="asset:.*/flawed is there"):
+        fosssim.Trace(fosssim.scenes()[0] + "/flawed")
+    with pytest.raises(TypeError, match="a pair is Particles"):
+        fosssim.detect((1, 2))
+    with pytest.raises(fosssim.Error, match=r"broken:1:\d+: "):
         (tmp_path / "broken").write_text("<scene><particle/></scene>")
         os.chdir(tmp_path)
         fosssim.Scene("broken")
@@ -92,14 +133,14 @@ def test_pairs_are_those_of_detect():
     printed = program("detect", "pe:3,1+4,1:5,9+2,6:5,3+5,8", "--radii", "1,1", "--format", "json")
     assert pair.data == json.loads(printed)
     assert fosssim.detect(fosssim.Particles((np.zeros(4), (3, 0, -3, 0)), (1, 1))).collides
-    with pytest.raises(fosssim.FosssimError, match="normal is zero"):
+    with pytest.raises(fosssim.Error, match="normal is zero"):
         fosssim.detect(fosssim.HalfPlane((0, 0, 0, 0), 1, (0, 0), (0, 0)))
 
 
-def test_the_notebook_runs():
+def test_the_notebook_runs_anywhere(tmp_path):
     book = json.loads((ROOT / "python/examples/trace.ipynb").read_text())
     names: dict = {}
-    os.chdir(ROOT / "python/examples")
+    os.chdir(tmp_path)
     for cell in book["cells"]:
         if cell["cell_type"] == "code":
             exec("".join(cell["source"]), names)

@@ -3,7 +3,7 @@ use crate::{
     dropped::{PageHost, ReadFault, opened},
     parts::PageAnswer,
 };
-use fosssim_grading::library;
+use fosssim_grading::{library, near};
 use fosssim_model::{
     assignments::Assignment,
     scene,
@@ -33,7 +33,10 @@ pub(crate) fn list() -> Value {
 
 /// Returns the XML of a scene, `Group/name`.
 pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
-    library::scene(name).ok_or_else(|| format!("there is no scene asset:{name}"))
+    library::scene(name).ok_or_else(|| {
+        let near = near::nearest(name, library::all_names(), 3).join(", asset:");
+        format!("there is no scene asset:{name}; the nearest are asset:{near}")
+    })
 }
 
 /// Returns the names of the scenes with whose first record a dropped trace begins, and the kind of file that it seems
