@@ -220,22 +220,30 @@ impl Settings {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
         if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
-            return Err(Problem::invalid("forms must be a list of program, sources and traces"));
+            return Err(Problem::invalid("choose what may be handed in (forms): program, sources or traces"));
         }
-        ensure(is_file_name(&self.program), Problem::invalid("program must be a plain file name"))?;
+        ensure(
+            is_file_name(&self.program),
+            Problem::invalid("the program's name (program) must be a plain file name"),
+        )?;
         if let Some(due) = self.due_at.filter(|due| !calendar::is_plausible(*due)) {
             return Err(Problem::invalid(format!(
-                "due_at must be milliseconds since 1970, but {due} looks like seconds; write \
+                "the due date (due_at) must be milliseconds since 1970, but {due} looks like seconds; write \
                  milliseconds, or a date such as 2026-12-01T23:59:00+01:00"
             )));
         }
         if self.late_days > 365 || self.late_percent > 100 {
-            return Err(Problem::invalid("late_days must be at most 365, and late_percent at most 100"));
+            return Err(Problem::invalid(
+                "late days (late_days) must be at most 365, and the late penalty (late_percent) at most 100 %",
+            ));
         }
-        ensure((1..=3600).contains(&self.seconds), Problem::invalid("seconds must be between 1 and 3600"))?;
+        ensure(
+            (1..=3600).contains(&self.seconds),
+            Problem::invalid("the time limit (seconds) must be 1 to 3600 seconds"),
+        )?;
         ensure(
             (1..=1 << 30).contains(&self.max_bytes),
-            Problem::invalid("max_bytes must be between 1 and 1073741824"),
+            Problem::invalid("the largest upload (max_bytes) must be 1 byte to 1 GiB"),
         )?;
         Ok(())
     }

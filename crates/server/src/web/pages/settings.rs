@@ -124,7 +124,7 @@ impl NewSettings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
             // At most a gigabyte, so that nothing is lost.
             max_bytes: (megabytes * MIB).round() as u64,
-            attempts: parsed("submissions in all", &self.attempts)?,
+            attempts: parsed("attempts", &self.attempts)?,
             per_hour: parsed("submissions in an hour", &self.per_hour)?,
             late_days: parsed("late days", &self.late_days)?,
             late_percent: parsed("the late penalty", &self.late_percent)?,
