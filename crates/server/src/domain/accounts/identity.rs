@@ -225,6 +225,10 @@ pub(in crate::domain) async fn use_link(
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
+    // The person could not sign in at the provider: staff may have connected the account with somebody else.
+    if way == Way::Own {
+        end_vouched_connections(transaction, account).await?;
+    }
     let able = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
     Ok(able.map(|_| (account, way)))
 }
@@ -234,12 +238,18 @@ pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, accou
     transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await.map(drop)
 }
 
+/// Ends connections with a provider that were made in sessions of links of a course's staff.
+async fn end_vouched_connections(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
+    let statement = "DELETE FROM platform_account WHERE account = ? AND vouched = 1";
+    transaction.execute(statement, values![account]).await.map(drop)
+}
+
 /// Ends every way into an account: it may do more from now on, or nothing at all.
 pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
-    transaction.execute("DELETE FROM platform_account WHERE account = ? AND vouched = 1", values![account]).await?;
+    end_vouched_connections(transaction, account).await?;
     let statement = "UPDATE token SET revoked_at = {now} WHERE account = ? AND revoked_at IS NULL";
     transaction.execute(statement, values![account]).await.map(drop)
 }
@@ -248,6 +258,7 @@ pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i
 /// used these links themselves.
 pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
+    end_vouched_connections(transaction, account).await?;
     transaction.execute("DELETE FROM session WHERE account = ? AND vouched = 1", values![account]).await?;
     let statement = "DELETE FROM sign_in_link WHERE account = ? AND vouched = 1 AND used_at IS NULL";
     transaction.execute(statement, values![account]).await?;

@@ -135,6 +135,13 @@ async fn an_account_is_connected_by_its_person(fresh: Fresh) {
     let (begun, code, cookies) = connect(&ada, "ada");
     let (ada, _) = entered(&server, &come(&server, (&begun.asked["state"], &code), &cookies).expect(303));
     assert_eq!([login(&ada), login(&sign_in(&server, &provider, "ada", |_| {}).0)], ["ada", "ada"]);
+    // A connection that staff could have made by its own link ends also with the administrator's link.
+    let planted = member(&server, &teacher, "eve", "student");
+    let (begun, code, cookies) = connect(&planted, "mallory");
+    come(&server, (&begun.asked["state"], &code), &cookies).expect(303);
+    assert_eq!(login(&sign_in(&server, &provider, "mallory", |_| {}).0), "eve");
+    welcome(&server, &admin.post_json("/api/v1/courses/physics/members/eve/link", "{}").expect(200));
+    assert_eq!(login(&sign_in(&server, &provider, "mallory", |_| {}).0), "mallory");
     ada.post_form("/account/provider/remove", "").expect(303);
     assert!(ada.get("/account").expect(200).text().contains("Connect with Uni"));
 }
