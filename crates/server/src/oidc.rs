@@ -79,7 +79,7 @@ pub struct SignInWords {
     pub state: String,
     /// Is in the token.
     pub nonce: String,
-    /// Proves that the code is redeemed by who asked for it: 43 characters or more.
+    /// Proves that this service asked for the code: 43 characters or more.
     pub verifier: String,
 }
 
@@ -127,7 +127,7 @@ impl Provider {
     /// Creates the client of a provider. With a domain only people with a confirmed address in it may sign in.
     ///
     /// # Errors
-    /// When the issuer is no address by HTTPS. On this machine HTTP will do, for tests.
+    /// When the issuer is not an HTTPS address. On this machine HTTP is accepted, for tests.
     pub fn new(
         issuer: String,
         client: String,
@@ -155,11 +155,6 @@ impl Provider {
         &self.issuer
     }
 
-    /// Returns the domain in which people must have an address to sign in.
-    pub fn domain(&self) -> Option<&str> {
-        self.domain.as_deref()
-    }
-
     /// Returns the provider's configuration, read at most this time ago.
     async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
         let mut published = self.published.lock().await;
@@ -179,7 +174,9 @@ impl Provider {
         metadata
     }
 
-    fn client(&self, metadata: CoreProviderMetadata, redirect: &str) -> Result<Client, ProviderFault> {
+    /// Returns a client by the provider's configuration of this age, for answers at an address of this service.
+    async fn client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
+        let metadata = self.metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
         let by_header = methods.is_empty() || methods.contains(&CoreClientAuthMethod::ClientSecretBasic);
         let redirect = RedirectUrl::new(redirect.to_owned()).map_err(rejected)?;
@@ -193,7 +190,7 @@ impl Provider {
     /// # Errors
     /// When the provider does not answer.
     pub async fn address(&self, redirect: &str, words: SignInWords) -> Result<Url, ProviderFault> {
-        let client = self.client(self.metadata(FRESH).await?, redirect)?;
+        let client = self.client(FRESH, redirect).await?;
         let SignInWords { state, nonce, verifier } = words;
         let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));
         let flow = CoreAuthenticationFlow::AuthorizationCode;
@@ -215,7 +212,7 @@ impl Provider {
         code: String,
         words: SignInWords,
     ) -> Result<ProviderPerson, ProviderFault> {
-        let client = self.client(self.metadata(FRESH).await?, redirect)?;
+        let client = self.client(FRESH, redirect).await?;
         let http = |request| send(self.agent.clone(), request);
         let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(rejected)?;
         let asked = asked.set_pkce_verifier(PkceCodeVerifier::new(words.verifier)).request_async(&http).await;
@@ -228,7 +225,7 @@ impl Provider {
         let claims = match claims(&client, token, &nonce) {
             // Providers change their keys.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
-                claims(&self.client(self.metadata(PAUSE).await?, redirect)?, token, &nonce)
+                claims(&self.client(PAUSE, redirect).await?, token, &nonce)
             }
             claims => claims,
         };
