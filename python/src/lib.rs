@@ -63,7 +63,7 @@ mod _native {
             request: Vec<PyBackedBytes>,
             trace: PyBackedBytes,
         ) -> PyResult<Vec<Bound<'py, PyBytes>>> {
-            let joined = parts::joined(&request.iter().map(|part| &part[..]).collect::<Vec<_>>());
+            let joined = parts::join_parts(&request.iter().map(|part| &part[..]).collect::<Vec<_>>());
             let answer = py.detach(|| self.0.answer(&joined, &Memory(&trace)));
             let parts = parts::split(&answer).ok_or_else(|| PyValueError::new_err("the answer is cut"))?;
             Ok(parts.iter().map(|part| PyBytes::new(py, part)).collect())

@@ -200,7 +200,7 @@ pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
 /// # Errors
 /// When it can't be written; the old file, if there is one, is unharmed.
 pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
-    replaced(|| place.replacement(), |file| file.write_all(bytes))
+    find_replaced(|| place.replacement(), |file| file.write_all(bytes))
         .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
@@ -209,11 +209,11 @@ pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
 /// # Errors
 /// As for [`write_at`], and when it can't be read.
 pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
-    replaced(|| place.replacement(), |file| io::copy(from, file).map(drop))
+    find_replaced(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
 
 /// Makes a whole file in one go.
-fn replaced(
+fn find_replaced(
     begin: impl FnOnce() -> io::Result<Replacement>,
     fill: impl FnOnce(&mut Replacement) -> io::Result<()>,
 ) -> io::Result<()> {
@@ -285,7 +285,7 @@ impl Folder {
     /// # Errors
     /// When it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        replaced(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
+        find_replaced(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
             .with_context(|| format!("cannot write {}", self.0.shown().join(name).display()))
     }
 }

@@ -59,7 +59,7 @@ fn a_folder_of_programs_is_graded() {
         "schema = 1\nname = \"one\"\n[[group]]\nname = \"g\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 1\n",
     );
     let suite = workspace.path("suite.toml").display().to_string();
-    let supervisor = Supervisor::at(env!("CARGO_BIN_EXE_fosssim-oracle"));
+    let supervisor = Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle"));
     let grades = grade::run(&workspace.path("class"), &suite, supervisor).expect("a grading");
     let mut lines: Vec<&str> = grades.lines().collect();
     lines.sort_unstable();

@@ -9,7 +9,7 @@ pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 /// # Panics
 /// When a part has 4 GiB or more, which memory here can't hold.
 #[must_use]
-pub fn joined(parts: &[&[u8]]) -> Vec<u8> {
+pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(parts.iter().map(|part| part.len() + 4).sum());
     for part in parts {
         let length = u32::try_from(part.len()).expect("a part that memory holds");
@@ -39,7 +39,7 @@ mod tests {
     #[test]
     fn what_is_joined_is_split_again_and_cut_bytes_are_noticed() {
         let parts: [&[u8]; 3] = [b"{}", b"", b"abc"];
-        let bytes = joined(&parts);
+        let bytes = join_parts(&parts);
         assert_eq!(split(&bytes).as_deref(), Some(&parts[..]));
         assert_eq!(split(&bytes[..bytes.len() - 1]), None);
         assert_eq!(split(&bytes[..3]), None);

@@ -59,13 +59,14 @@ impl PageSession {
     /// Answers a request. The first part of an answer is JSON: the requested result, or `{"error": "words"}`.
     #[must_use]
     pub fn answer(&mut self, request: &[u8], host: &dyn PageHost) -> Vec<u8> {
-        let (value, bytes) = self.parsed(request, host).unwrap_or_else(|error| (json!({ "error": error }), Vec::new()));
+        let (value, bytes) =
+            self.answer_parsed(request, host).unwrap_or_else(|error| (json!({ "error": error }), Vec::new()));
         let value = value.to_string();
         let all: Vec<&[u8]> = std::iter::once(value.as_bytes()).chain(bytes.iter().map(Vec::as_slice)).collect();
-        parts::joined(&all)
+        parts::join_parts(&all)
     }
 
-    fn parsed(&mut self, request: &[u8], host: &dyn PageHost) -> PageAnswer {
+    fn answer_parsed(&mut self, request: &[u8], host: &dyn PageHost) -> PageAnswer {
         let parts = parts::split(request).ok_or("the request is cut")?;
         let (first, rest) = parts.split_first().ok_or("the request is empty")?;
         let request = serde_json::from_slice(first).map_err(|error| format!("the request can't be read: {error}"))?;

@@ -115,7 +115,7 @@ impl DroppedSubmission {
             "points": grade::reached(graded.points),
             "of": grade::points(graded.max_points),
             "verdict": graded.verdict.name(),
-            "unfit": words::unfit(&graded),
+            "unfit": words::describe_unfit(&graded),
             "scenes": scenes,
             "groups": groups,
         });

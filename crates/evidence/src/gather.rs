@@ -121,7 +121,7 @@ pub fn gather(
     let first_wrong = (1..).zip(rulings).find(|(_, ruling)| wrong(ruling)).map(|(step, _)| step);
     let center = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
     let close = close_steps(focus, first_wrong, layout);
-    let mut gathering = Gathering::new(scene, Window::around(center, layout, budget));
+    let mut gathering = Gathering::new(scene, Window::for_focus(center, layout, budget));
     let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
     if reader.next(&mut end).is_err() {
@@ -242,7 +242,7 @@ impl<'a> Gathering<'a> {
         inspector.step.actual_contacts.clone_from(impulses);
         // The inspector comes first: it keeps the expected mid record, and makes the step continue with the trace's.
         if let (Some(expected), Some(mid)) = (&inspector.step.expected_mid, mid_state) {
-            count.apart = apart(expected, mid);
+            count.apart = distances(expected, mid);
         }
         self.evidence.inspected.push(inspector.finish());
         done.then_some(count)
@@ -254,7 +254,7 @@ impl<'a> Gathering<'a> {
     }
 
     fn keep_step(&mut self, class: StepClass, count: &PassCount<'_>, end: &LenientFrame) {
-        let [position, velocity] = apart(self.own.state(), &end.state);
+        let [position, velocity] = distances(self.own.state(), &end.state);
         self.evidence.steps.push(Step {
             class,
             position: worse(count.apart[0], position),
@@ -280,7 +280,7 @@ fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec
 }
 
 /// Returns how far two states are apart: in positions and in velocities.
-fn apart(one: &State, other: &State) -> [f64; 2] {
+fn distances(one: &State, other: &State) -> [f64; 2] {
     [largest(&one.positions, &other.positions), largest(&one.velocities, &other.velocities)]
 }
 
@@ -345,7 +345,7 @@ impl Observer for PassCount<'_> {
 impl Steer for PassCount<'_> {
     fn synchronize(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
-            self.apart = apart(state, mid);
+            self.apart = distances(state, mid);
         }
         go_on_from(self.mid, state)
     }

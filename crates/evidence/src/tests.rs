@@ -82,14 +82,14 @@ fn a_finding_about_a_polynomial_has_its_call() {
 #[test]
 fn a_motion_beyond_the_budget_is_cut_around_the_first_wrong_step() {
     let layout = Layout { particles: 10, impulses: true, polynomials: true, steps: 1000 };
-    let whole = Window::around(500, layout, 80 * 1001);
+    let whole = Window::for_focus(500, layout, 80 * 1001);
     assert!(whole.is_whole(1000) && whole.holds(0, false) && !whole.holds(0, true));
-    let part = Window::around(500, layout, 80 * 90);
+    let part = Window::for_focus(500, layout, 80 * 90);
     assert_eq!(part, Window { first: 470, last: 560 });
     assert!(part.holds(470, false) && !part.holds(470, true) && part.holds(560, true) && !part.holds(561, true));
-    assert_eq!(Window::around(3, layout, 80 * 90), Window { first: 0, last: 90 });
-    assert_eq!(Window::around(999, layout, 80 * 90), Window { first: 910, last: 1000 });
-    assert_eq!(Window::around(7, layout, 1).last - Window::around(7, layout, 1).first, 1);
+    assert_eq!(Window::for_focus(3, layout, 80 * 90), Window { first: 0, last: 90 });
+    assert_eq!(Window::for_focus(999, layout, 80 * 90), Window { first: 910, last: 1000 });
+    assert_eq!(Window::for_focus(7, layout, 1).last - Window::for_focus(7, layout, 1).first, 1);
 }
 
 #[test]

@@ -21,7 +21,7 @@ pub struct Window {
 impl Window {
     /// Returns all steps, if a motion of that length fits in the budget; else those around `focus`, a third before it.
     #[must_use]
-    pub fn around(focus: u32, layout: Layout, budget: usize) -> Self {
+    pub fn for_focus(focus: u32, layout: Layout, budget: usize) -> Self {
         let per_step = 4 * layout.particles.max(1) * layout.records_per_step() as usize;
         let room = u32::try_from((budget / per_step).max(1)).unwrap_or(u32::MAX);
         if room > layout.steps {

@@ -132,7 +132,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
     let (verdict, reason) = match blames_program || of_program > of_trace {
-        true => (of_program, Reason::Program(reached(&program.ended, judged, run.limits))),
+        true => (of_program, Reason::Program(find_progress(&program.ended, judged, run.limits))),
         false => (of_trace, trace_says),
     };
     let differs = fair::cause(judged);
@@ -188,7 +188,7 @@ fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
 }
 
 /// Returns the progress of a program's trace, and the limit that stopped the program.
-fn reached(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgress {
+fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgress {
     let limit = match ended {
         RunEnd::CpuLimit => Some(Limit::Time(limits.cpu)),
         RunEnd::WallLimit => Some(Limit::Time(limits.wall)),
@@ -218,12 +218,14 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
             (Verdict::BadTrace, Reason::Trace(unreadable))
         }
         (_, Ruling::Accepted) => (Verdict::Accepted, Reason::Right),
-        (_, Ruling::WrongAnswer | Ruling::Undecided) => (Verdict::WrongAnswer, Reason::Wrong(wrong(judged, rules))),
+        (_, Ruling::WrongAnswer | Ruling::Undecided) => {
+            (Verdict::WrongAnswer, Reason::Wrong(find_fault(judged, rules)))
+        }
         (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(refusal(judged))),
     }
 }
 
-fn wrong(judged: &Outcome, rules: Rules) -> WrongTrace {
+fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
     let account = judged.findings_by(rules.official());
     if let (Book::Parity, Some(error)) = (rules.official(), judged.parity.endless) {
         return WrongTrace::NoResult(error);

@@ -5,7 +5,7 @@ use super::{
     conclude::{Look, ProgramRun, Run, conclude},
     config::{Hints, RunLimits},
     fault,
-    guard::{Fault, guarded},
+    guard::{Fault, catch_panic},
     result::{Activity, Failure, Reason, SceneResult},
     staging::StagedProgram,
     task::SceneTask,
@@ -131,7 +131,7 @@ impl Runner<'_> {
             hints: self.hints,
             limits: self.limits,
         };
-        let mut result = match explained(&run, &kept, &program.program) {
+        let mut result = match explain_run(&run, &kept, &program.program) {
             Ok(result) => result,
             Err((activity, fault)) => return Ok(failed(activity, &fault)),
         };
@@ -151,7 +151,7 @@ impl Runner<'_> {
                 rules: self.rules,
                 hints: self.hints,
             };
-            let drawn = guarded(|| cards.keep(&judged, self.student_hints));
+            let drawn = catch_panic(|| cards.keep(&judged, self.student_hints));
             (result.card, result.card_for_students) = match drawn {
                 Ok(names) => names.map_err(|error| format!("a page's data can't be kept: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
@@ -224,7 +224,7 @@ impl Runner<'_> {
         mut trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Result<Outcome, String>, Fault> {
-        let judged = guarded(|| {
+        let judged = catch_panic(|| {
             fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
@@ -280,15 +280,15 @@ impl Runner<'_> {
 }
 
 /// Returns the result of a judged run with its explanations, or what panicked.
-fn explained(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
-    let mut explaining = guarded(|| fault::inject(Activity::Explaining, program)).err();
+fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
+    let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
     let explain = |look: Look| {
-        guarded(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
+        catch_panic(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);
             Vec::new()
         })
     };
-    let result = guarded(|| conclude(run, explain)).map_err(|fault| (Activity::Judging, fault))?;
+    let result = catch_panic(|| conclude(run, explain)).map_err(|fault| (Activity::Judging, fault))?;
     explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
 }
 

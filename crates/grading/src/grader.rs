@@ -9,7 +9,7 @@ use super::{
     config::Hints,
     execute::Runner,
     grade::Grade,
-    guard::guarded,
+    guard::catch_panic,
     key::Key,
     located::{ContentIndex, Contents},
     one_file::OneFile,
@@ -51,8 +51,8 @@ pub struct Submission {
 
 impl Submission {
     /// Returns the name of its program's file.
-    fn called(&self) -> String {
-        called(&self.program.as_ref().map_or_else(|| self.path.clone(), |program| self.path.join(program)))
+    fn program_name(&self) -> String {
+        program_name(&self.program.as_ref().map_or_else(|| self.path.clone(), |program| self.path.join(program)))
     }
 }
 
@@ -205,7 +205,7 @@ impl<'a> SharedGrading<'a> {
             return;
         }
         lock(&self.kept).insert(key.clone());
-        let kept = guarded(|| results.keep(key, &submission.name, result));
+        let kept = catch_panic(|| results.keep(key, &submission.name, result));
         if let Err(error) = kept.unwrap_or_else(|fault| Err(KeepError(fault.to_string()))) {
             let _ = self.full.set(error);
             self.cancellation.cancel();
@@ -298,7 +298,7 @@ impl<'a> SubmissionGrading<'a> {
     /// Finds or makes the result of a scene, by its number in the plan, keeps it, and reports it; after the last one,
     /// also the grade.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
-        let done = guarded(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
+        let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
         });
         let FinishedScene { result, cached, claim } = done;
@@ -332,7 +332,7 @@ impl<'a> SubmissionGrading<'a> {
         let students = grader.plan.student_hints(&scene.name);
         let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
         // Found or claimed before anything is copied, if the program is known in its place.
-        let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.called(), students));
+        let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.program_name(), students));
         let known = match known.map(|key| shared.claim(key, find)).transpose() {
             Ok(claim) => claim,
             Err(done) => return *done,
@@ -349,7 +349,7 @@ impl<'a> SubmissionGrading<'a> {
                 }
             }
             Ok(staged) => {
-                let key = shared.key(&staged.digest, scene, &called(&staged.program), students);
+                let key = shared.key(&staged.digest, scene, &program_name(&staged.program), students);
                 match known.filter(|claim| claim.key == key).map_or_else(|| shared.claim(key, find), Ok) {
                     Err(done) => *done,
                     Ok(claim) => {
@@ -452,7 +452,7 @@ pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 }
 
 /// Returns the name of a program's file.
-pub(super) fn called(program: &Path) -> String {
+pub(super) fn program_name(program: &Path) -> String {
     program.file_name().unwrap_or_default().to_string_lossy().into_owned()
 }
 

@@ -25,7 +25,7 @@ thread_local! {
 ///
 /// # Errors
 /// When the work panics.
-pub fn guarded<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     listen();
     let outer = GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(work));
@@ -61,14 +61,14 @@ mod tests {
 
     #[test]
     fn a_panic_comes_back_with_its_words_and_place() {
-        let fault = guarded(|| -> u32 { panic!("no {}\nleft", "tea") }).expect_err("a panic").to_string();
+        let fault = catch_panic(|| -> u32 { panic!("no {}\nleft", "tea") }).expect_err("a panic").to_string();
         assert!(fault.starts_with("no tea left at ") && fault.contains("guard.rs:"), "{fault}");
-        assert_eq!(guarded(|| 7), Ok(7));
+        assert_eq!(catch_panic(|| 7), Ok(7));
         // A panic within another, and one that was forwarded through another thread.
-        let nested = guarded(|| guarded(|| panic!("inner")).map_err(|fault| fault.to_string().len()));
+        let nested = catch_panic(|| catch_panic(|| panic!("inner")).map_err(|fault| fault.to_string().len()));
         assert!(matches!(nested, Ok(Err(1..))), "{nested:?}");
         // A panic that began on another thread continues without a call of the hook.
-        let elsewhere = guarded(|| panic::resume_unwind(Box::new("elsewhere")));
+        let elsewhere = catch_panic(|| panic::resume_unwind(Box::new("elsewhere")));
         assert_eq!(elsewhere, Err(Fault("elsewhere".to_owned())));
     }
 }

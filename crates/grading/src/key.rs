@@ -15,11 +15,11 @@ impl Key {
     /// limits, the command, the way of judging). The judging program is always part of it.
     #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
-        Self::by(this_build(), program, scene, words)
+        Self::from_parts(this_build(), program, scene, words)
     }
 
     /// Returns the key of a run that this build judges.
-    fn by(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
+    fn from_parts(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(program.as_bytes());
         hasher.update(blake3::hash(scene).as_bytes());
@@ -104,8 +104,11 @@ mod tests {
         assert_ne!(Key::from_program(&program, b"scene", &[]), Key::from_program(&program, b"scen", &[]));
         assert_ne!(Key::from_program(&blake3::hash(b"x"), b"scene", &[]), Key::from_program(&program, b"scene", &[]));
         // Two builds of one version are two judges.
-        assert_ne!(Key::by("one build", &program, b"scene", &[]), Key::by("another", &program, b"scene", &[]));
-        assert_eq!(Key::by(this_build(), &program, b"scene", &[]), Key::from_program(&program, b"scene", &[]));
+        assert_ne!(
+            Key::from_parts("one build", &program, b"scene", &[]),
+            Key::from_parts("another", &program, b"scene", &[])
+        );
+        assert_eq!(Key::from_parts(this_build(), &program, b"scene", &[]), Key::from_program(&program, b"scene", &[]));
         assert_eq!(this_build().len(), 64, "a digest, and no version");
     }
 

@@ -89,5 +89,5 @@ pub use fosssim_findings::{
     earlier::EarlierGrade, result,
 };
 use fosssim_findings::{grade, verdict};
-pub use guard::{Fault, guarded};
+pub use guard::{Fault, catch_panic};
 pub use task::SceneTask;

@@ -36,11 +36,11 @@ pub fn all_names() -> impl Iterator<Item = &'static str> {
 /// Returns the XML of a scene.
 #[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
-    contents(&ASSETS, &format!("{name}.xml")).or_else(|| made(name).map(MadeScene::xml))
+    contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_made(name).map(MadeScene::xml))
 }
 
 /// Returns the scene of this name, or name in full, that is made.
-fn made(name: &str) -> Option<&'static MadeScene> {
+fn find_made(name: &str) -> Option<&'static MadeScene> {
     let short = name.strip_prefix(MADE_OF.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
     TIMING.iter().find(|made| made.name == short)
 }
@@ -75,7 +75,7 @@ pub fn reference(path: &str) -> Option<&'static [u8]> {
 /// Returns the assignment in whose folder a scene is.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
-    if made(name).is_some() {
+    if find_made(name).is_some() {
         return Some(MADE_OF);
     }
     let path = file(&ASSETS, &format!("{name}.xml"))?.path();
@@ -112,15 +112,15 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 
 /// Returns a file of an assignment by its path within the assignment's folder, or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    let of = |assignment: Assignment| below(inner(root, assignment.key())?, path);
-    Assignment::default_first().into_iter().find_map(of).or_else(|| below(root, path))
+    let of = |assignment: Assignment| find_below(inner(root, assignment.key())?, path);
+    Assignment::default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
 }
 
 /// Returns the file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by
 /// part.
-fn below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
+fn find_below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     match path.split_once('/') {
-        Some((first, rest)) => below(inner(folder, first)?, rest),
+        Some((first, rest)) => find_below(inner(folder, first)?, rest),
         None => folder.files().find(|file| is_called(file.path(), path)),
     }
 }

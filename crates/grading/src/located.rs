@@ -48,7 +48,7 @@ impl ContentIndex {
     }
 
     /// Returns the content with its names.
-    fn named(self) -> Content {
+    fn to_content(self) -> Content {
         let family = &FAMILIES[self.family];
         let value = |(axis, value): (usize, usize)| {
             let axis = &family.axes[axis];
@@ -108,7 +108,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     })?;
     Some(LocatedFailure {
         failing,
-        contents: contents.into_iter().map(ContentIndex::named).collect(),
+        contents: contents.into_iter().map(ContentIndex::to_content).collect(),
         failed: failed.len(),
         with,
         without: tried.len() - with,
@@ -160,9 +160,9 @@ mod tests {
         assert_eq!((found.failed, found.with, found.without, found.step), (24, 24, 61, 7));
         // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other
         // place.
-        assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))].map(ContentIndex::named));
+        assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))].map(ContentIndex::to_content));
         let narrower = located(&contents, |number| (number < 9).then_some(FailureKind::Time)).expect("a place");
-        assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1))).named()], 9));
+        assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1))).to_content()], 9));
         let most =
             located(&contents, |number| (number < 24 && number != 5).then_some(FailureKind::Crash)).expect("a place");
         assert_eq!((most.failed, most.with, most.without), (23, 24, 61));

@@ -13,7 +13,7 @@ const MARKS: usize = 4;
 /// for letters with marks that are written in two ways ([`exact`]).
 #[must_use]
 pub fn shown(name: &OsStr) -> String {
-    each_chunk(name, |valid| escaped(&valid.nfc().collect::<String>(), |_| false))
+    each_chunk(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
 }
 
 /// Returns the name as [`shown`] does, with marks that belong to the letter before them as escapes: another text for
@@ -21,7 +21,7 @@ pub fn shown(name: &OsStr) -> String {
 #[must_use]
 pub fn exact(name: &OsStr) -> String {
     // A letter that is not in its usual form has another form that is shorter or longer, or is another letter.
-    each_chunk(name, |valid| escaped(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
+    each_chunk(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
 }
 
 fn each_chunk(name: &OsStr, text: impl Fn(&str) -> String) -> String {
@@ -35,7 +35,7 @@ fn each_chunk(name: &OsStr, text: impl Fn(&str) -> String) -> String {
     shown
 }
 
-fn escaped(text: &str, besides: impl Fn(char) -> bool) -> String {
+fn escape(text: &str, besides: impl Fn(char) -> bool) -> String {
     let mut shown = String::with_capacity(text.len());
     let mut rest = text.chars().peekable();
     let (mut before, mut marks) = (None, 0);

@@ -6,11 +6,11 @@ const LONGEST: usize = 60;
 /// Returns the word that was probably meant: at most a few slips away, or the same except for case and punctuation.
 #[must_use]
 pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
-    let typed = plain(word);
+    let typed = to_plain(word);
     let near = candidates.filter_map(|candidate| {
-        let known = plain(candidate);
+        let known = to_plain(candidate);
         let begins = typed.len() >= 3 && (known.starts_with(&typed) || typed.starts_with(&known));
-        let swapped = sorted(&typed) == sorted(&known);
+        let swapped = sort_letters(&typed) == sort_letters(&known);
         let slips = if (begins || swapped) && known != typed { 1 } else { distance(&typed, &known) };
         (slips <= (typed.len().max(known.len()) / 3).min(2)).then_some((slips, candidate))
     });
@@ -21,10 +21,10 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
 /// and by its last part, because its group may be mistyped or left out.
 #[must_use]
 pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
-    let last = |name: &str| plain(name.rsplit('/').next().unwrap_or_default());
-    let (typed, typed_last) = (plain(word), last(word));
+    let last = |name: &str| to_plain(name.rsplit('/').next().unwrap_or_default());
+    let (typed, typed_last) = (to_plain(word), last(word));
     let slips = |name: &str| {
-        let (known, known_last) = (plain(name), last(name));
+        let (known, known_last) = (to_plain(name), last(name));
         // A name that holds the whole of it is as near as one slip.
         let holds = typed.len() >= 3 && known.windows(typed.len()).any(|part| part == typed);
         let of_last = or_beginning(&typed_last, &known_last);
@@ -37,11 +37,11 @@ pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize
 }
 
 /// Returns the letters and digits of a word in lower case.
-fn plain(text: &str) -> Vec<char> {
+fn to_plain(text: &str) -> Vec<char> {
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(LONGEST).collect()
 }
 
-fn sorted(letters: &[char]) -> Vec<char> {
+fn sort_letters(letters: &[char]) -> Vec<char> {
     let mut letters = letters.to_vec();
     letters.sort_unstable();
     letters

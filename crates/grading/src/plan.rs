@@ -128,7 +128,7 @@ fn resolved(
         let mut scenes = Vec::new();
         for Pattern { text, at } in group.scenes {
             let found = match text.strip_prefix("asset:") {
-                Some(pattern) => embedded(pattern),
+                Some(pattern) => find_embedded(pattern),
                 None => files(&text),
             };
             let found = found.unwrap_or_else(|message| {
@@ -175,7 +175,7 @@ pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes,
     Err(SuiteError { problems })
 }
 
-fn embedded(pattern: &str) -> Result<MatchingScenes, String> {
+fn find_embedded(pattern: &str) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
     let found: MatchingScenes = library::all_names()
         .filter(|name| library::takes(&glob, name))

@@ -4,7 +4,7 @@ use super::{
     config::BuildStep,
     one_file::{ANOTHERS, OneFile, is_anothers},
     result::UnusableReason,
-    staging::{CopyError, LARGEST_FOLDER, StagedProgram, at, build, copied, open_in, unreadable},
+    staging::{CopyError, LARGEST_FOLDER, StagedProgram, at, build, copy_program, open_in, unreadable},
     temporary::TemporaryFolder,
     upload,
 };
@@ -42,7 +42,7 @@ impl Recipe<'_> {
     /// When the file can't be read for a fault of the machine, or the copy can't be written.
     pub fn file(&self, path: &Path) -> Result<StagedProgram, String> {
         let why = match collect::open_file(path, true) {
-            Ok((file, _)) => return self.opened(file, path),
+            Ok((file, _)) => return self.stage_opened(file, path),
             Err(CollectError::NotRegular { what: "a folder", .. }) => {
                 UnusableReason::CouldNotStart(StartProblem::IsFolder)
             }
@@ -69,9 +69,9 @@ impl Recipe<'_> {
             Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => {
                 UnusableReason::Unreadable(ANOTHERS.to_owned())
             }
-            Ok(file) => return self.opened(file, &path),
+            Ok(file) => return self.stage_opened(file, &path),
             Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
-                Some(file) => return self.unpacked(file, &path),
+                Some(file) => return self.stage_unpacked(file, &path),
                 None => upload::without(name, folder),
             },
             Err(CollectError::System { source, .. })
@@ -91,22 +91,22 @@ impl Recipe<'_> {
     pub fn folder(&self, path: &Path) -> Result<StagedProgram, String> {
         match (self.build, only_archive(path, true)?) {
             (None, _) => self.file(path),
-            (_, Some(archive)) => self.unpacked(archive, path),
+            (_, Some(archive)) => self.stage_unpacked(archive, path),
             (Some(step), None) => build(path, step, self.backend, self.cancellation),
         }
     }
 
     /// Stages an open file: an archive or a program.
-    fn opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
+    fn stage_opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
-            Ok(FileKind::Archive(_)) => self.unpacked(file, path),
+            Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
             // The copy shows why the file can't be read.
-            _ => copied(file, path),
+            _ => copy_program(file, path),
         }
     }
 
     /// Unpacks an archive, and stages its contents: sources for a build, or else the program.
-    fn unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
+    fn stage_unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
         let folder = TemporaryFolder::make("upload").map_err(at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
         fs::DirBuilder::new().mode(0o700).create(&inside).map_err(at(&inside))?;
@@ -122,7 +122,7 @@ impl Recipe<'_> {
             return build(&top, step, self.backend, self.cancellation);
         }
         match open_in(&top, self.program) {
-            Ok(file) => copied(file, &top.join(self.program)),
+            Ok(file) => copy_program(file, &top.join(self.program)),
             Err(_) => Ok(StagedProgram::refused(path, upload::without(self.program, &top))),
         }
     }

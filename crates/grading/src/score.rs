@@ -68,7 +68,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         max_points,
         // No program was run that could reveal a hidden scene.
         shows_output: true,
-        refuted: refuted(plan, &groups),
+        refuted: find_refuted(plan, &groups),
         groups,
         build: None,
         warnings: Vec::new(),
@@ -167,7 +167,7 @@ fn follows(group: &GroupGrade) -> bool {
 const WITNESSES: usize = 12;
 
 /// Returns the likely mistakes that accepted scenes contradict; the smallest of these scenes are tried.
-fn refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
+fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()
         .map(|(graded, task)| (&task.scene, graded.explanations.as_slice()))

@@ -209,7 +209,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
         (ValueKind::Number(..), _) => wrong("a number"),
         (ValueKind::Whole, _) => wrong("a whole number that is not negative"),
         (ValueKind::Flag, _) => wrong("true or false"),
-        (ValueKind::Choice(words), _) => wrong(&format!("one of {}", listed(words, "or"))),
+        (ValueKind::Choice(words), _) => wrong(&format!("one of {}", list_words(words, "or"))),
         (ValueKind::Table(_), _) => wrong(&format!("a table, [{name}]")),
         (ValueKind::Tables(_), _) => wrong(&format!("a list of tables, [[{name}]]")),
     }
@@ -234,11 +234,11 @@ fn article(kind: &str) -> String {
 /// Returns the message for a word that is not in the list.
 fn not_among(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
-    format!("{name} \"{word}\" is not known: there are {}{}", listed(words, "and"), hint.unwrap_or_default())
+    format!("{name} \"{word}\" is not known: there are {}{}", list_words(words, "and"), hint.unwrap_or_default())
 }
 
 /// Returns `"a", "b" and "c"`.
-fn listed(words: &[&str], last: &str) -> String {
+fn list_words(words: &[&str], last: &str) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match &quoted[..] {
         [rest @ .., one] if !rest.is_empty() => format!("{} {last} {one}", rest.join(", ")),

@@ -181,7 +181,7 @@ impl Shrinker<'_> {
             let begin = beginnings(&task.scene, &seen.trace, &steps);
             let is_over = || time() >= self.limits.time || self.runner.cancellation.is_cancelled();
             // At best the scene alone distinguishes the mistake from all others.
-            let mut search = |leads| self.reduced((&reason, leads), begin.clone(), &spent, &is_over, progress);
+            let mut search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over, progress);
             let (mut found, mut held) = search(true)?;
             if found.is_none() {
                 (found, held) = search(false)?;
@@ -202,7 +202,7 @@ impl Shrinker<'_> {
     }
 
     /// Reduces one of these scenes, and returns it with the program's runs on all scenes on which it was wrong.
-    fn reduced(
+    fn reduce(
         &self,
         (reason, leads): (&WrongReason, bool),
         begin: Vec<Scene>,

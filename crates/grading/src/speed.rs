@@ -6,7 +6,7 @@
 use super::{
     config,
     execute::Runner,
-    grader::{SubmissionGrading, called},
+    grader::{SubmissionGrading, program_name},
     result::SceneResult,
     staging::StagedProgram,
     task::SceneTask,
@@ -37,7 +37,7 @@ impl SubmissionGrading<'_> {
                 if result.timing.as_ref().is_some_and(|timing| is_of_here(timing, marking)) {
                     continue;
                 }
-                result.timing = self.timed(scene, marking, begin + self.grader.plan.patience.total);
+                result.timing = self.time_scene(scene, marking, begin + self.grader.plan.patience.total);
                 *cached = false;
                 self.keep_timed(scene, result);
                 // No further time is left.
@@ -52,14 +52,14 @@ impl SubmissionGrading<'_> {
     fn keep_timed(&self, scene: &SceneTask, result: &SceneResult) {
         if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged()) {
             let students = self.grader.plan.student_hints(&scene.name);
-            let key = self.shared.key(&staged.digest, scene, &called(&staged.program), students);
+            let key = self.shared.key(&staged.digest, scene, &program_name(&staged.program), students);
             self.shared.keep(&key, self.submission, result);
         }
     }
 
     /// Returns the timed runs of a scene, of which the first alone begins after `end`; nothing if the grader failed or
     /// was stopped.
-    fn timed(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
+    fn time_scene(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
         let (staged, reference) = (self.staged(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
         let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };

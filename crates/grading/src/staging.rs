@@ -143,7 +143,7 @@ impl StagedProgram {
 }
 
 /// Copies an open program, unless it is the grader itself.
-pub(super) fn copied(file: File, path: &Path) -> Result<StagedProgram, String> {
+pub(super) fn copy_program(file: File, path: &Path) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = LARGEST_FOLDER;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
@@ -230,7 +230,7 @@ pub(super) fn build(
     match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
-            Ok(StagedProgram { build, ..copied(file, &copy.join(&step.program))? })
+            Ok(StagedProgram { build, ..copy_program(file, &copy.join(&step.program))? })
         }
         Err(CollectError::Missing { .. }) => Ok(failed(BuildEnd::MadeNo(step.program.clone()), output)),
         Err(error) => Ok(failed(BuildEnd::Unusable(error.to_string()), output)),
@@ -366,7 +366,7 @@ mod tests {
 
     fn program(path: &Path) -> StagedProgram {
         let (file, _) = collect::open_file(path, true).unwrap();
-        copied(file, path).unwrap()
+        copy_program(file, path).unwrap()
     }
 
     fn why(copied: Result<(), CopyError>) -> String {

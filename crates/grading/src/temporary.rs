@@ -28,7 +28,7 @@ impl TemporaryFolder {
     /// Makes a folder; its name begins with its purpose.
     pub(super) fn make(purpose: &str) -> io::Result<Self> {
         let grader = Grader::this()?;
-        let made = closed(&format!("{purpose}-"), &grader.path)?;
+        let made = make_closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
             // Build tools name files by their whole path, and run as another user. The entries here are closed by
@@ -92,7 +92,7 @@ impl Grader {
         const TRIES: u32 = 10;
         let mut problem = io::Error::other("somebody removes every folder that is made there");
         for _ in 0..TRIES {
-            let path = closed(PREFIX, place)?.keep();
+            let path = make_closed(PREFIX, place)?.keep();
             let lock = path.join(LOCK);
             let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
@@ -127,7 +127,7 @@ impl Drop for Grader {
 }
 
 /// Returns a new folder for its owner only.
-fn closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
+fn make_closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
 }
 

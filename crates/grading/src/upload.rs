@@ -15,13 +15,13 @@ const DEEPEST: u32 = 3;
 /// Returns why there is no program to run: the expected name, and what there is instead.
 pub(super) fn without(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
-        Ok(opened) => found(program, &opened),
+        Ok(opened) => list_contents(program, &opened),
         Err(error) => FolderContents::Unreadable(error.to_string()),
     };
     UnusableReason::NoProgram { sought: program.escape_debug().to_string(), found }
 }
 
-fn found(program: &str, folder: &OpenFolder) -> FolderContents {
+fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
     let mut names = folder.names().unwrap_or_default();
     names.retain(|name| !name.as_bytes().starts_with(b".") && !fosssim_intake::is_litter(name));
     names.sort();

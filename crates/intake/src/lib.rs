@@ -161,13 +161,13 @@ fn walk(file: File, limits: ArchiveLimits, folder: Option<&Path>) -> Result<Vec<
     Ok(walk.files)
 }
 
-fn damaged(error: impl std::fmt::Display) -> ArchiveError {
+fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
 /// Returns the number of entries that a zip archive claims, by its end record (APPNOTE 4.3.16), or by the one of large
 /// archives (4.3.14) if the end record refers to it.
-fn announced(file: &mut File) -> io::Result<Option<u64>> {
+fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     /// Both records, the pointer between them, and the longest comment behind them.
     const LONGEST: u64 = 56 + 20 + 22 + 0xffff;
     let size = file.seek(SeekFrom::End(0))?;
@@ -195,12 +195,12 @@ fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
 /// Reads an archive's data about the next file.
 fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     let mut header = Vec::new();
-    entry.take(LONGEST_HEADER + 1).read_to_end(&mut header).map_err(damaged)?;
-    if header.len() as u64 > LONGEST_HEADER { Err(damaged("a header is too long")) } else { Ok(header) }
+    entry.take(LONGEST_HEADER + 1).read_to_end(&mut header).map_err(describe_damage)?;
+    if header.len() as u64 > LONGEST_HEADER { Err(describe_damage("a header is too long")) } else { Ok(header) }
 }
 
 /// Returns a name for a message.
-fn shown(name: &[u8]) -> String {
+fn escape_name(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
 
@@ -217,14 +217,14 @@ impl Walk<'_> {
     }
 
     fn walk_zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
-        let announced = announced(&mut file).map_err(ArchiveError::Read)?;
+        let announced = count_announced(&mut file).map_err(ArchiveError::Read)?;
         // The library reads the list of all files before it shows one.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
         let packed = file.metadata().map_err(ArchiveError::Read)?.len();
         let meter = Meter::new(LONGEST_LIST);
-        let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(damaged)?;
+        let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
         // Files may overlap in the archive, and be empty however long they are.
         meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
         // The library keeps one entry of each name, and the intended one would be unclear.
@@ -232,12 +232,12 @@ impl Walk<'_> {
             return Err(ArchiveError::Twice("a name".to_owned()));
         }
         for index in 0..archive.len() {
-            let mut entry = archive.by_index(index).map_err(damaged)?;
+            let mut entry = archive.by_index(index).map_err(describe_damage)?;
             let name = entry.name_raw().to_vec();
             let mode = entry.unix_mode();
             // The file type in Unix permissions: none given, a file or a folder.
             if mode.is_some_and(|mode| !matches!(mode & 0o170_000, 0 | 0o100_000 | 0o040_000)) {
-                return Err(ArchiveError::Kind(shown(&name)));
+                return Err(ArchiveError::Kind(escape_name(&name)));
             }
             if entry.is_dir() {
                 self.note_folder(&name)?;
@@ -253,8 +253,8 @@ impl Walk<'_> {
         let mut archive = tar::Archive::new(meter.reader(input));
         // The name that a header of its own gives the next file. The library would read such a header whole.
         let mut long_name = None;
-        for entry in archive.entries().map_err(damaged)?.raw(true) {
-            let mut entry = entry.map_err(damaged)?;
+        for entry in archive.entries().map_err(describe_damage)?.raw(true) {
+            let mut entry = entry.map_err(describe_damage)?;
             let kind = entry.header().entry_type();
             if kind == tar::EntryType::GNULongName {
                 let mut name = header(&mut entry)?;
@@ -265,7 +265,7 @@ impl Walk<'_> {
             if kind == tar::EntryType::XHeader {
                 let header = header(&mut entry)?;
                 for said in tar::PaxExtensions::new(&header) {
-                    let said = said.map_err(damaged)?;
+                    let said = said.map_err(describe_damage)?;
                     match said.key_bytes() {
                         b"path" => long_name = Some(said.value_bytes().to_vec()),
                         // Files have it that are larger than any may be here.
@@ -284,7 +284,7 @@ impl Walk<'_> {
                 }
                 // Describes the archive, and is no entry of it.
                 tar::EntryType::XGlobalHeader => {}
-                _ => return Err(ArchiveError::Kind(shown(&name))),
+                _ => return Err(ArchiveError::Kind(escape_name(&name))),
             }
         }
         Ok(())
@@ -296,7 +296,7 @@ impl Walk<'_> {
         if self.entries > self.limits.entries {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
-        let refused = || ArchiveError::Name(shown(name));
+        let refused = || ArchiveError::Name(escape_name(name));
         let text = std::str::from_utf8(name).map_err(|_| refused())?;
         // A backslash is a separator to some programs and part of a name to others.
         if text.is_empty() || text.len() > 1000 || text.contains(['\\', ':']) || text.chars().any(char::is_control) {
@@ -311,7 +311,7 @@ impl Walk<'_> {
             }
         }
         if path.components().count() > DEEPEST {
-            return Err(ArchiveError::Depth(shown(name)));
+            return Err(ArchiveError::Depth(escape_name(name)));
         }
         Ok(path)
     }
@@ -320,7 +320,7 @@ impl Walk<'_> {
     fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
             if self.seen.contains(folder) {
-                return Err(ArchiveError::Twice(shown(name)));
+                return Err(ArchiveError::Twice(escape_name(name)));
             }
             self.folders.insert(folder.to_owned());
         }
@@ -346,7 +346,7 @@ impl Walk<'_> {
         }
         self.note_folders_above(&path, name)?;
         if path.as_os_str().is_empty() || self.folders.contains(&path) || !self.seen.insert(path.clone()) {
-            return Err(ArchiveError::Twice(shown(name)));
+            return Err(ArchiveError::Twice(escape_name(name)));
         }
         match self.folder {
             None => drop(self.copy(input, &mut io::sink())?),
@@ -370,7 +370,7 @@ impl Walk<'_> {
     fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
         const AT_ONE_GO: u64 = 64 << 10;
         let mut chunk = Vec::new();
-        input.by_ref().take(START as u64).read_to_end(&mut chunk).map_err(damaged)?;
+        input.by_ref().take(START as u64).read_to_end(&mut chunk).map_err(describe_damage)?;
         let kind = FileKind::from_start(&chunk);
         while !chunk.is_empty() {
             self.bytes += chunk.len() as u64;
@@ -379,7 +379,7 @@ impl Walk<'_> {
             }
             output.write_all(&chunk).map_err(ArchiveError::Folder)?;
             chunk.clear();
-            input.by_ref().take(AT_ONE_GO).read_to_end(&mut chunk).map_err(damaged)?;
+            input.by_ref().take(AT_ONE_GO).read_to_end(&mut chunk).map_err(describe_damage)?;
         }
         Ok(kind)
     }

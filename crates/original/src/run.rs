@@ -35,7 +35,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
         Ok(loaded) => loaded,
         Err(refusal) => return refuse_scene(arguments, &refusal),
     };
-    if let Some(message) = unsupported(arguments, &scene.scene) {
+    if let Some(message) = find_unsupported(arguments, &scene.scene) {
         return complain(message);
     }
     let wanted = arguments.generate || arguments.movie.is_some();
@@ -134,7 +134,7 @@ fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
 }
 
 /// Returns the reason why this run is not supported: a window, a picture, or very much memory.
-fn unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
+fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }

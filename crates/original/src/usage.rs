@@ -15,8 +15,8 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     text.extend(brief(program));
     text.extend(b"\n\nWhere: \n\n");
     let mut entry = |names: &str, help: &str| {
-        text.extend(wrapped(names.as_bytes(), 3, 3));
-        text.extend(wrapped(help.as_bytes(), 5, 0));
+        text.extend(wrap(names.as_bytes(), 3, 3));
+        text.extend(wrap(help.as_bytes(), 5, 0));
         text.push(b'\n');
     };
     for flag in listed(program) {
@@ -28,7 +28,7 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     entry("--version", "Displays version information and exits.");
     entry("-h,  --help", "Displays usage information and exits.");
     text.push(b'\n');
-    text.extend(wrapped(TITLE.as_bytes(), 3, 0));
+    text.extend(wrap(TITLE.as_bytes(), 3, 0));
     text.push(b'\n');
     text
 }
@@ -51,7 +51,7 @@ fn brief(program: &[u8]) -> Vec<u8> {
     }
     line.extend(b" [--] [--version] [-h]");
     // Long program names do not push the following lines off the page.
-    wrapped(&line, 3, (program.len() + 2).min(WIDTH / 2))
+    wrap(&line, 3, (program.len() + 2).min(WIDTH / 2))
 }
 
 const fn kind(flag: &Flag) -> &'static str {
@@ -60,7 +60,7 @@ const fn kind(flag: &Flag) -> &'static str {
 
 /// Breaks a text at spaces, commas and bars so that lines have at most [`WIDTH`] columns: `indent` spaces before the
 /// first line, `further` more before the others. Words that do not fit are split where the line ends.
-fn wrapped(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
+fn wrap(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
     let mut lines = Vec::new();
     let mut indent = indent;
     let mut allowed = WIDTH - indent;

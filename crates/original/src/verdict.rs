@@ -20,11 +20,11 @@ pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     }
     let mut text = String::new();
     for (name, (value, bound)) in NAMES.into_iter().zip(outcome.parity.residuals.with_bounds()) {
-        text += &format!("{name}: {}   {}\n", general(value), passed(value < bound));
+        text += &format!("{name}: {}   {}\n", general(value), describe_passed(value < bound));
     }
     let passed_collisions = if outcome.parity.collisions_passed == Some(true) { "Yes." } else { "No." };
     text += &format!("{collisions}: {passed_collisions}\n");
-    text += &format!("Overall success: {}\n", passed(outcome.parity.overall == Overall::Passed));
+    text += &format!("Overall success: {}\n", describe_passed(outcome.parity.overall == Overall::Passed));
     text += &format!("{PINK}FOSSSim message: {PLAIN}Saved residual to residual.txt.\n");
     text
 }
@@ -56,6 +56,6 @@ pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Optio
     Some(text)
 }
 
-const fn passed(yes: bool) -> &'static str {
+const fn describe_passed(yes: bool) -> &'static str {
     if yes { "Passed." } else { "Failed." }
 }

@@ -201,7 +201,7 @@ fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
         let at = |list: &[f64], factor: f64| {
             list.len().checked_sub(power + 1).map_or_else(|| "none".to_owned(), |place| exact(list[place] * factor))
         };
-        let mark = if wrong.contains(&power) { Cell::looking(Look::Bad, "<- differs") } else { "".into() };
+        let mark = if wrong.contains(&power) { Cell::with_look(Look::Bad, "<- differs") } else { "".into() };
         table.row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
     }
     text.extend(table.render(style).lines().map(|line| format!("  {line}\n")));

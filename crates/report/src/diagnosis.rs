@@ -42,7 +42,7 @@ impl Diagnosis {
         let smallest =
             self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, None, style))).collect::<String>();
         if let [case] = &self.cases[..] {
-            return alone(case, style) + &smallest;
+            return render_single(case, style) + &smallest;
         }
         let mut text = String::new();
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
@@ -71,13 +71,13 @@ impl Diagnosis {
             };
             let heading = format!("{most} ({explained} of {})", counted(wrong as u64, "wrong trace"));
             let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
-            text += &indented(std::slice::from_ref(common), style);
+            text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
         }
         for case in &self.cases {
             let _ = writeln!(text, "{}", head(case, style));
             for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
-                text += &indented(std::slice::from_ref(other), style);
+                text += &render_mistakes(std::slice::from_ref(other), style);
             }
         }
         text + &smallest
@@ -107,7 +107,7 @@ fn head(case: &Case, style: Style) -> String {
     line
 }
 
-fn alone(case: &Case, style: Style) -> String {
+fn render_single(case: &Case, style: Style) -> String {
     let Case { scene, trace, accepted, note, first, explanations } = case;
     let mut text = format!("{trace} on {scene}\n");
     if let Some(note) = note {
@@ -127,12 +127,12 @@ fn alone(case: &Case, style: Style) -> String {
                  state, so nothing before it is to blame.\n";
     } else {
         text.push('\n');
-        text += &indented(explanations, style);
+        text += &render_mistakes(explanations, style);
     }
     text
 }
 
-fn indented(explanations: &[Explanation], style: Style) -> String {
+fn render_mistakes(explanations: &[Explanation], style: Style) -> String {
     lines(explanations, style).iter().map(|line| format!("  {line}\n")).collect()
 }
 
@@ -173,7 +173,7 @@ view! {
         note: Option<&'a str> = case.note.as_deref(),
         /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {
-            Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
+            Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
         /// Likely mistakes, the likeliest first.

@@ -65,7 +65,7 @@ impl ExplanationParts {
         };
         let mut details: Vec<String> = details(explanation).iter().map(|line| style.set(line)).collect();
         if !explanation.is_unfinished() {
-            details.extend(others(&explanation.same_as));
+            details.extend(describe_others(&explanation.same_as));
         }
         let example = explanation.example.as_ref().map(|example| example_lines(example, style)).unwrap_or_default();
         Self { is_likely, what: what(explanation), evidence, details, example }
@@ -83,20 +83,20 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
 
 /// Returns the explanations that can't be distinguished from one. Known mistakes are named; a guess that is only found
 /// in polynomials has no sentence of its own, and is counted.
-fn others(keys: &[String]) -> Option<String> {
+fn describe_others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
     let (shown, more) = named.split_at(named.len().min(LISTED));
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
         (true, more) => Some(format!("Can't be told apart here from {}", counted(more as u64, "other formula"))),
-        (false, 0) => Some(format!("Can't be told apart here from: {}.", listed(shown))),
-        (false, more) => Some(format!("Can't be told apart here from: {}; and {more} more.", listed(shown))),
+        (false, 0) => Some(format!("Can't be told apart here from: {}.", list_sentences(shown))),
+        (false, more) => Some(format!("Can't be told apart here from: {}; and {more} more.", list_sentences(shown))),
     }
 }
 
 /// Returns the sentences in a row, of which each may hold a colon.
-fn listed(sentences: &[String]) -> String {
+fn list_sentences(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
 

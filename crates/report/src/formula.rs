@@ -37,16 +37,16 @@ fn symbol(word: &str, after: &str) -> String {
         "sqrt" if after.starts_with('(') => "√".to_owned(),
         "sum" if after.starts_with('(') => "Σ".to_owned(),
         "re" if number.is_empty() => "rₑ".to_owned(),
-        "d" if number.len() == 2 => format!("Δx{}", shifted(number, '₀')),
-        "dx" if number.is_empty() || is_index => format!("Δx{}", shifted(number, '₀')),
+        "d" if number.len() == 2 => format!("Δx{}", shift_digits(number, '₀')),
+        "dx" if number.is_empty() || is_index => format!("Δx{}", shift_digits(number, '₀')),
         _ if word.starts_with("dx_") => format!("Δ{}", &word[1..]),
-        _ if letters.len() == 1 && letters != "_" && is_index => format!("{letters}{}", shifted(number, '₀')),
+        _ if letters.len() == 1 && letters != "_" && is_index => format!("{letters}{}", shift_digits(number, '₀')),
         _ => word.to_owned(),
     }
 }
 
 /// Returns digits in another row of Unicode, which begins with `zero`.
-fn shifted(digits: &str, zero: char) -> String {
+fn shift_digits(digits: &str, zero: char) -> String {
     digits.bytes().filter_map(|digit| char::from_u32(u32::from(zero) + u32::from(digit - b'0'))).collect()
 }
 

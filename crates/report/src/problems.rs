@@ -46,9 +46,9 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let from = start.saturating_sub(REACH);
     let line_start = source[from..start].iter().rposition(|&byte| byte == b'\n').map_or(from, |at| from + at + 1);
     let end = span.end.clamp(start, line_end(source, start));
-    let before = shown(&source[line_start..start]);
-    let marked = shown(&source[start..end]);
-    let after = shown(&source[end..line_end(source, end)]);
+    let before = escape_line(&source[line_start..start]);
+    let marked = escape_line(&source[start..end]);
+    let after = escape_line(&source[end..line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
         // There is nothing to point at: an empty file, or an empty line.
@@ -81,7 +81,7 @@ fn line_end(source: &[u8], at: usize) -> usize {
 }
 
 /// Returns a piece of the source as a terminal may show it: one column per character, no control characters.
-fn shown(bytes: &[u8]) -> String {
+fn escape_line(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\r');
     text.chars()

@@ -13,7 +13,7 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     let width = scenes.iter().map(|(name, _)| wrap::columns(name)).max().unwrap_or(0);
     let line = |(name, scene): &(&str, Scene)| {
         let blanks = " ".repeat(width - wrap::columns(name));
-        let size = style.paint(Look::Faint, &format!("({})", size(scene)));
+        let size = style.paint(Look::Faint, &format!("({})", describe_size(scene)));
         let words = scene.description.as_deref().map(|text| one_line(sentence(text)) + " ").unwrap_or_default();
         format!("asset:{name}{blanks}  {words}{size}\n")
     };
@@ -22,7 +22,7 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
 
 /// Returns `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: kinds without a member are left out, and the milestones are
 /// those whose programs can run it.
-fn size(scene: &Scene) -> String {
+fn describe_size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),
         (scene.edges.len() as u64, "edge"),

@@ -74,7 +74,7 @@ view! {
         note: Option<String> = small.note.as_deref().map(plain),
         /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {
-            Some(DisclosedFinding::Full(finding)) => Some(FindingView::by(Book::Fair, finding)),
+            Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
         /// Likely mistakes, the cause first.

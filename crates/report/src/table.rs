@@ -13,7 +13,7 @@ pub struct Cell {
 
 impl Cell {
     /// Returns a cell with this style.
-    pub fn looking(look: Look, text: impl Into<String>) -> Self {
+    pub fn with_look(look: Look, text: impl Into<String>) -> Self {
         Self { text: text.into(), look: Some(look) }
     }
 }
@@ -54,7 +54,7 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
 
     /// Appends a row of headings.
     pub fn heading(&mut self, titles: [&str; COLUMNS]) {
-        self.row(titles.map(|title| Cell::looking(Look::Faint, title)));
+        self.row(titles.map(|title| Cell::with_look(Look::Faint, title)));
     }
 
     /// Renders the rows as lines, indented by two spaces, columns three spaces apart, without blanks at the ends of
@@ -94,14 +94,14 @@ mod tests {
         let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
         table.heading(["name", "n", "note"]);
         table.row(["a".into(), "100".into(), "".into()]);
-        table.row(["longer".into(), "".into(), Cell::looking(Look::Bad, "no")]);
+        table.row(["longer".into(), "".into(), Cell::with_look(Look::Bad, "no")]);
         assert_eq!(table.render(Style::Plain), "  name       n   note\n  a        100\n  longer         no\n");
     }
 
     #[test]
     fn colors_do_not_move_columns() {
         let mut table = Table::new([Align::Right, Align::Left]);
-        table.row([Cell::looking(Look::Good, "1"), "x".into()]);
+        table.row([Cell::with_look(Look::Good, "1"), "x".into()]);
         table.row(["10".into(), "y".into()]);
         assert_eq!(table.render(Style::Color), "   \x1b[1;32m1\x1b[0m   x\n  10   y\n");
     }

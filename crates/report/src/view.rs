@@ -143,9 +143,9 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 impl FindingView {
     /// Returns a finding by the rules of a book. The tolerances of the fair rules depend on the values.
     #[must_use]
-    pub fn by(book: Book, finding: &Finding) -> Self {
+    pub fn from_finding(book: Book, finding: &Finding) -> Self {
         let (kind, detail) = (finding.kind(), &finding.detail);
-        let (expected, actual, residual) = compared(detail);
+        let (expected, actual, residual) = compare_values(detail);
         let (coefficient, rescaled) = match *detail {
             FindingDetail::Coefficient { power, rescaled, .. } => (Some(power), rescaled),
             _ => (None, None),
@@ -191,7 +191,7 @@ fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
 }
 
 /// Returns the values that a finding compares, the reference's first, and their distance.
-fn compared(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Option<f64>) {
+fn compare_values(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Option<f64>) {
     let both = |expected, actual, residual| (Some(expected), Some(actual), residual);
     match *detail {
         FindingDetail::MissedCollision { expected } => (Some(Value::Collision(expected.into())), None, None),

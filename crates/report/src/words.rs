@@ -34,7 +34,7 @@ pub fn summary(result: &SceneResult) -> String {
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
-        Reason::Program(reached) => ending(result) + &how_far(*reached, result.steps),
+        Reason::Program(reached) => ending(result) + &describe_progress(*reached, result.steps),
         Reason::LeftOut(why) => describe_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
         Reason::Withheld => "details of single scenes are not shown, because the suite has hidden groups".to_owned(),
@@ -69,7 +69,7 @@ pub fn details(result: &SceneResult) -> Vec<String> {
     }
     if let Some(told) = &result.disclosure {
         lines.extend(told.official().first_divergence.as_ref().map(first_divergence));
-        lines.extend(counts(told.official()));
+        lines.extend(describe_counts(told.official()));
         if let Some(damage) = &told.damage {
             lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.what));
         }
@@ -92,11 +92,11 @@ pub fn details(result: &SceneResult) -> Vec<String> {
 
 /// Returns the fault of the submission itself, and so of each of its scenes.
 #[must_use]
-pub fn unfit(grade: &Grade) -> Option<String> {
+pub fn describe_unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
         SubmissionFault::Build(end) => build(end),
         SubmissionFault::Milestone(other) => milestone(other),
-        SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => unwritten(grade),
+        SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => describe_unwritten(grade),
         SubmissionFault::Scene(result) => summary(result),
     })
 }
@@ -109,7 +109,7 @@ fn milestone(other: Assignment) -> String {
 
 /// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, if hints allow
 /// it.
-fn unwritten(grade: &Grade) -> String {
+fn describe_unwritten(grade: &Grade) -> String {
     let scenes = counted(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
         Some((likely, _)) if likely.is_unfinished() => explanation::what(likely),
@@ -121,7 +121,7 @@ fn unwritten(grade: &Grade) -> String {
 /// Returns one sentence why not everything is accepted; nothing if everything is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
-    if let Some(unfit) = unfit(grade) {
+    if let Some(unfit) = describe_unfit(grade) {
         return Some(unfit);
     }
     let Some(first) = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun)) else {
@@ -185,7 +185,7 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
 
 /// Returns the progress of a program's trace. The number of records that a crash has lost is unknown: some may have
 /// been waiting to be written.
-fn how_far(reached: ProgramProgress, steps: u32) -> String {
+fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
         (Some(_), done) => format!(" at step {} of {steps}", done + 1),
@@ -259,7 +259,7 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
 }
 
 /// Returns `counts: wrong coefficient (12), missed collision (3)`, if there is more than the first finding.
-fn counts(account: &DisclosedBook) -> Option<String> {
+fn describe_counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
     // A kind that is found in damaged records only has no example, and proves nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);

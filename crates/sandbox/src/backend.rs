@@ -16,7 +16,7 @@ use std::{
 use super::{
     collect::OpenFolder,
     fake::FakeRun,
-    fault::{SandboxError, set_up_failed},
+    fault::{SandboxError, from_setup_failure},
     job::{Job, Policy, ProgramIdentity},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     laid::{folder_fault, plain_name, write_files},
@@ -44,7 +44,7 @@ impl Supervisor {
 
     /// Returns another program, for tests.
     #[must_use]
-    pub fn at(program: impl Into<PathBuf>) -> Self {
+    pub fn from_path(program: impl Into<PathBuf>) -> Self {
         Self { program: program.into() }
     }
 
@@ -66,7 +66,7 @@ impl Supervisor {
     /// Starts it for a run, with the descriptors that the run's walls need.
     fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
         let begin = || -> io::Result<_> {
-            let (mut child, control) = connected(self.command(MODE_RUN))?;
+            let (mut child, control) = spawn_connected(self.command(MODE_RUN))?;
             let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
             Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
@@ -96,7 +96,7 @@ impl Supervisor {
         let begin = || -> io::Result<_> {
             let mut command = self.command(MODE_KEEP);
             command.stdout(Stdio::null());
-            let (child, socket) = connected(command)?;
+            let (child, socket) = spawn_connected(command)?;
             let keeper = Keeper::new(kind, child, socket);
             let (control, answers) = keeper.ask(order, files)?;
             Ok((SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
@@ -122,7 +122,7 @@ impl Supervisor {
 }
 
 /// Starts a supervisor; the answer is also the other end of its standard input.
-fn connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
+fn spawn_connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
     let (ours, theirs) = UnixStream::pair()?;
     Ok((command.stdin(OwnedFd::from(theirs)).spawn()?, ours))
 }
@@ -314,7 +314,7 @@ impl Backend {
                     libc::ENOMEM if failure.stage == wire::EXECUTE => {
                         FakeRun::ended(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
                     }
-                    _ => Err(set_up_failed(failure)),
+                    _ => Err(from_setup_failure(failure)),
                 }
             }
             Ok(Event::Done(_)) | Err(_) => {

@@ -13,7 +13,7 @@ use super::{
 const LOADER_FAILED: i32 = 127;
 
 /// Returns how the run of `order` ended, given the facts and the program's standard error.
-pub(super) fn ended(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
+pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
     if report.exec_errno == Some(libc::ENOMEM) {
         return RunEnd::MemoryLimit;
     }
@@ -140,18 +140,18 @@ mod tests {
     #[test]
     fn the_reason_to_kill_outranks_the_kill() {
         let report = Report { status: libc::SIGKILL, cause: Some(RunEnd::WallLimit), ..Report::default() };
-        assert_eq!(ended(&order(), &report, b""), RunEnd::WallLimit);
-        assert_eq!(ended(&order(), &Report { cause: None, ..report }, b""), RunEnd::Signalled(libc::SIGKILL));
+        assert_eq!(decide_end(&order(), &report, b""), RunEnd::WallLimit);
+        assert_eq!(decide_end(&order(), &Report { cause: None, ..report }, b""), RunEnd::Signalled(libc::SIGKILL));
     }
 
     #[test]
     fn a_trace_beyond_its_limit_outranks_all_but_a_cancellation() {
         for cause in [None, Some(RunEnd::FolderLimit), Some(RunEnd::WallLimit)] {
             let report = Report { cause, trace_over: true, status: libc::SIGXFSZ, ..Report::default() };
-            assert_eq!(ended(&order(), &report, b""), RunEnd::TraceLimit);
+            assert_eq!(decide_end(&order(), &report, b""), RunEnd::TraceLimit);
         }
         let report = Report { cause: Some(RunEnd::Cancelled), trace_over: true, ..Report::default() };
-        assert_eq!(ended(&order(), &report, b""), RunEnd::Cancelled);
+        assert_eq!(decide_end(&order(), &report, b""), RunEnd::Cancelled);
     }
 
     #[test]
@@ -161,51 +161,57 @@ mod tests {
             (libc::SIGXFSZ, RunEnd::FolderLimit),
             (libc::SIGSEGV, RunEnd::Signalled(libc::SIGSEGV)),
         ] {
-            assert_eq!(ended(&order(), &Report { status: signal, ..Report::default() }, b""), expected);
+            assert_eq!(decide_end(&order(), &Report { status: signal, ..Report::default() }, b""), expected);
         }
     }
 
     #[test]
     fn a_limit_passed_between_two_looks_is_still_passed() {
-        assert_eq!(ended(&order(), &Report { peak_memory: 1001, ..exit(0) }, b""), RunEnd::MemoryLimit);
+        assert_eq!(decide_end(&order(), &Report { peak_memory: 1001, ..exit(0) }, b""), RunEnd::MemoryLimit);
         assert_eq!(
-            ended(&order(), &Report { cpu: Duration::from_micros(1_000_001), ..exit(0) }, b""),
+            decide_end(&order(), &Report { cpu: Duration::from_micros(1_000_001), ..exit(0) }, b""),
             RunEnd::CpuLimit
         );
-        assert_eq!(ended(&order(), &Report { folder_over: true, ..exit(0) }, b""), RunEnd::FolderLimit);
-        assert_eq!(ended(&order(), &exit(0), b""), RunEnd::Exited(0));
+        assert_eq!(decide_end(&order(), &Report { folder_over: true, ..exit(0) }, b""), RunEnd::FolderLimit);
+        assert_eq!(decide_end(&order(), &exit(0), b""), RunEnd::Exited(0));
     }
 
     #[test]
     fn loaders_and_displays_explain_a_failure_and_never_a_success() {
         let loader = b"./FOSSSim: error while loading shared libraries: libglut.so.3: cannot open shared object file";
         let missing = RunEnd::CouldNotStart(StartProblem::MissingLibrary { library: "libglut.so.3".into() });
-        assert_eq!(ended(&order(), &exit(127), loader), missing);
-        assert_eq!(ended(&order(), &exit(1), loader), RunEnd::Exited(1));
+        assert_eq!(decide_end(&order(), &exit(127), loader), missing);
+        assert_eq!(decide_end(&order(), &exit(1), loader), RunEnd::Exited(1));
         let forged = b"error while loading shared libraries: what the hidden scene holds: x";
-        assert_eq!(ended(&order(), &exit(127), forged), RunEnd::Exited(127), "a sentence is no name");
+        assert_eq!(decide_end(&order(), &exit(127), forged), RunEnd::Exited(127), "a sentence is no name");
         let display = b"freeglut (./FOSSSim): failed to open display ''";
-        assert_eq!(ended(&order(), &exit(1), display), RunEnd::CouldNotStart(StartProblem::NeedsDisplay));
-        assert_eq!(ended(&order(), &exit(0), display), RunEnd::Exited(0));
+        assert_eq!(decide_end(&order(), &exit(1), display), RunEnd::CouldNotStart(StartProblem::NeedsDisplay));
+        assert_eq!(decide_end(&order(), &exit(0), display), RunEnd::Exited(0));
     }
 
     #[test]
     fn who_gives_up_for_want_of_memory_has_met_the_memory_limit() {
         let aborted = Report { status: libc::SIGABRT, ..Report::default() };
         let words = b"terminate called after throwing an instance of 'std::bad_alloc'\n  what():  std::bad_alloc\n";
-        assert_eq!(ended(&order(), &aborted, words), RunEnd::MemoryLimit);
-        assert_eq!(ended(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"), RunEnd::Signalled(libc::SIGABRT));
-        assert_eq!(ended(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"), RunEnd::MemoryLimit);
-        assert_eq!(ended(&order(), &exit(0), b"MemoryError\n"), RunEnd::Exited(0));
+        assert_eq!(decide_end(&order(), &aborted, words), RunEnd::MemoryLimit);
+        assert_eq!(
+            decide_end(&order(), &aborted, b"a.cpp:3: Assertion `x' failed.\n"),
+            RunEnd::Signalled(libc::SIGABRT)
+        );
+        assert_eq!(
+            decide_end(&order(), &exit(1), b"Traceback\n  x = [0] * 10**12\nMemoryError\n"),
+            RunEnd::MemoryLimit
+        );
+        assert_eq!(decide_end(&order(), &exit(0), b"MemoryError\n"), RunEnd::Exited(0));
         let long_ago = [&words[..], b"caught it\n1\n2\n3\n"].concat();
-        assert_eq!(ended(&order(), &aborted, &long_ago), RunEnd::Signalled(libc::SIGABRT));
+        assert_eq!(decide_end(&order(), &aborted, &long_ago), RunEnd::Signalled(libc::SIGABRT));
         let crashed = Report { status: libc::SIGSEGV, ..Report::default() };
-        assert_eq!(ended(&order(), &crashed, words), RunEnd::Signalled(libc::SIGSEGV));
+        assert_eq!(decide_end(&order(), &crashed, words), RunEnd::Signalled(libc::SIGSEGV));
     }
 
     #[test]
     fn a_refusal_of_the_kernel_is_translated() {
-        let refused = |errno| ended(&order(), &Report { exec_errno: Some(errno), ..Report::default() }, b"");
+        let refused = |errno| decide_end(&order(), &Report { exec_errno: Some(errno), ..Report::default() }, b"");
         assert_eq!(refused(libc::ETXTBSY), RunEnd::CouldNotStart(StartProblem::Busy));
         assert_eq!(refused(libc::ENOEXEC), RunEnd::CouldNotStart(StartProblem::NotAProgram));
         assert_eq!(refused(libc::ENOENT), RunEnd::CouldNotStart(StartProblem::MissingLoader {}));

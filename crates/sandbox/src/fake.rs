@@ -60,7 +60,7 @@ impl FakeRun {
             stderr: CapturedOutput { bytes: self.stderr, truncated: false },
             layers,
         };
-        Ok(RunningProgram::known(outcome, job.folder.clone()))
+        Ok(RunningProgram::from_outcome(outcome, job.folder.clone()))
     }
 }
 

@@ -69,7 +69,7 @@ pub enum SandboxError {
 }
 
 /// Converts a failure that the supervisor reported.
-pub(super) fn set_up_failed(failure: wire::Failure) -> SandboxError {
+pub(super) fn from_setup_failure(failure: wire::Failure) -> SandboxError {
     let source = match failure.errno {
         0 => io::Error::other("no further reason"),
         errno => io::Error::from_raw_os_error(errno),

@@ -143,7 +143,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
         report(
             Layer::CallFilter,
             probe.seccomp.clone(),
-            "an allow list; all other calls are refused",
+            "an allow list; all other calls are denied",
             true,
             "use a kernel with CONFIG_SECCOMP_FILTER on x86_64 or aarch64, and allow seccomp in the container's \
             profile",

@@ -3,7 +3,7 @@
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
 /// Returns the kernel's answer to `sysinfo`.
-fn asked() -> libc::sysinfo {
+fn read_sysinfo() -> libc::sysinfo {
     // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it.
     unsafe {
         let mut about: libc::sysinfo = std::mem::zeroed();
@@ -20,13 +20,13 @@ pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
 
 /// Returns whether memory may be moved to a disk, where it counts as resident for no process.
 pub(super) fn has_swap() -> bool {
-    asked().totalswap > 0
+    read_sysinfo().totalswap > 0
 }
 
 /// Returns the answer to `sysinfo` of a machine on which nothing is in use and no other process runs, in the kernel's
 /// form.
 pub(super) fn without_others() -> Vec<u8> {
-    let about = asked();
+    let about = read_sysinfo();
     // SAFETY: an all-zero structure is valid. It is made of integers only; the bytes between them are zero as well, and
     // all bytes are read while it lives.
     unsafe {

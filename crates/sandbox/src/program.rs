@@ -71,7 +71,7 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     // A program that may be executed and not read would also be closed to the supervisor's checks.
     let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
     match (start.strip_prefix(b"#!"), other_system(&start)) {
-        (Some(line), _) => interpreted(line, own, 0),
+        (Some(line), _) => find_interpreter(line, own, 0),
         (None, Some(system)) => Err(StartProblem::WrongSystem { system: system.into() }),
         (None, None) => elf(&start).map(|()| Program::default()),
     }
@@ -100,7 +100,7 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 /// Each program that is named here becomes executable for the submission. It must therefore be one of the system's own
 /// programs, after all links and `..` are resolved: a script that names the grader's program would be graded by its own
 /// answers. Nothing is looked up outside the system's folders, because that would reveal what files there are.
-fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
+fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
     /// The depth of interpreters that are scripts themselves; the kernel follows as many.
     const DEEPEST: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
@@ -146,7 +146,7 @@ fn interpreted(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, Star
     let start = first_bytes(&resolved).ok_or(StartProblem::NotPermitted)?;
     let mut program = match start.strip_prefix(b"#!") {
         Some(line) if depth < DEEPEST => {
-            let outer = interpreted(line, own, depth + 1)?;
+            let outer = find_interpreter(line, own, depth + 1)?;
             let inner = std::mem::take(&mut script.words);
             let by = outer.script.clone().unwrap_or_default();
             script.words = [by.words, vec![found.to_string_lossy().into_owned()], inner[1..].to_vec()].concat();

@@ -11,7 +11,7 @@ use std::{
 use super::{
     collect::{CollectError, OpenFolder},
     decide,
-    fault::{SandboxError, set_up_failed},
+    fault::{SandboxError, from_setup_failure},
     keepers::{Host, RestingKeeper},
     layers::LayerReport,
     outcome::{CapturedOutput, RunOutcome},
@@ -60,7 +60,7 @@ impl RunningProgram {
     }
 
     /// Returns a run in this folder whose outcome is known already.
-    pub(super) fn known(outcome: RunOutcome, path: PathBuf) -> Self {
+    pub(super) fn from_outcome(outcome: RunOutcome, path: PathBuf) -> Self {
         let folder = LeftFolder { in_memory: None, path, _keeper: None };
         let canceller = Canceller { control: ControlSocket::default() };
         Self { state: State::Known(Box::new(outcome)), folder, canceller }
@@ -116,7 +116,7 @@ impl RunningProgram {
         };
         let report = match event {
             Event::Done(report) => Ok(report),
-            Event::Failed(failure) => Err(set_up_failed(failure)),
+            Event::Failed(failure) => Err(from_setup_failure(failure)),
             Event::Ready { .. } => Err(SandboxError::Lost { how: "it spoke out of turn".into() }),
         };
         let keeper = supervised.host.rest(report.as_ref().ok());
@@ -129,7 +129,7 @@ impl RunningProgram {
             return Err(SandboxError::Changed { program: program.display().to_string() });
         }
         let outcome = RunOutcome {
-            ended: decide::ended(&supervised.order, &report, &stderr),
+            ended: decide::decide_end(&supervised.order, &report, &stderr),
             cpu: report.cpu,
             wall: report.wall,
             peak_memory: report.peak_memory,

@@ -3,18 +3,18 @@ use chrono::DateTime;
 use std::ops::RangeInclusive;
 
 /// Returns a moment by its milliseconds since 1970, as a form's field has it; `None` beyond the calendar.
-fn written(milliseconds: i64, form: &str) -> String {
+fn format(milliseconds: i64, form: &str) -> String {
     DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
 }
 
 /// Formats a time for people: `2026-11-22 08:45`.
-pub fn minute(milliseconds: i64) -> String {
-    written(milliseconds, "%Y-%m-%d %H:%M")
+pub fn format_minute(milliseconds: i64) -> String {
+    format(milliseconds, "%Y-%m-%d %H:%M")
 }
 
 /// Formats a time for other programs (ISO 8601): `2026-11-22T08:45:12.345+00:00`.
 pub fn exact(milliseconds: i64) -> String {
-    written(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
+    format(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
 /// Moments in milliseconds: numbers between these are seconds that a client took for milliseconds.
@@ -72,7 +72,7 @@ mod tests {
             (4_107_542_400_000, "2100-03-01 00:00"),
             (-1, "1969-12-31 23:59"),
         ] {
-            assert_eq!(minute(milliseconds), text);
+            assert_eq!(format_minute(milliseconds), text);
         }
         assert_eq!(exact(1_795_336_859_999), "2026-11-22T08:40:59.999+00:00");
         assert_eq!(exact(-1), "1969-12-31T23:59:59.999+00:00");

@@ -51,7 +51,7 @@ pub async fn give_up(
         Some(keep) => give_up_submissions(database, millis(keep)).await?,
         None => 0,
     };
-    let artifacts = store.give_up(least, |digests| named(database, digests)).await?;
+    let artifacts = store.give_up(least, |digests| find_named(database, digests)).await?;
     Ok(GivenUp { submissions, artifacts })
 }
 
@@ -95,7 +95,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
 }
 
 /// Returns which of these digests the database names.
-async fn named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
+async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
     let suites = suites(&mut transaction).await?;
     let wanted = serde_json::to_string(&digests).unwrap_or_default();

@@ -57,7 +57,7 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts
     let shown = report.as_ref().map_or_else(|| Some(nothing()), shown_grade);
     Ok(KeptTexts {
         shown: shown.as_ref().map(text).unwrap_or_default(),
-        failed: report.as_ref().map(failed),
+        failed: report.as_ref().map(list_failed),
         parts: report.as_ref().map(parts),
     })
 }
@@ -68,7 +68,7 @@ fn read(grade: impl io::Read) -> Option<GradeFile> {
 }
 
 /// Returns the scenes that are not accepted, including hidden ones.
-fn failed(report: &GradeFile) -> String {
+fn list_failed(report: &GradeFile) -> String {
     let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
     // A name with a line break would make two lines.
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
@@ -211,7 +211,7 @@ mod tests {
         assert_eq!(shown(&hidden("AC", 90)), Some(nothing()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
-        assert_eq!(failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
+        assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
         assert_eq!(parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[]}"#);
     }
 }

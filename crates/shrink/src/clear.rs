@@ -19,7 +19,7 @@ type PairDecisions = Vec<(Pair, bool)>;
 pub(crate) fn clear_decisions(scene: &Scene) -> Option<PairDecisions> {
     let (decisions, end) = run(scene)?;
     let is_same = |seed: u64| {
-        let (others, other_end) = run(&shifted(scene, seed))?;
+        let (others, other_end) = run(&shift(scene, seed))?;
         let is_near = |(one, other): (&f64, &f64)| (one - other).abs() <= SHIFT * GROWTH * (1.0 + one.abs());
         (others == decisions && end.iter().zip(&other_end).all(is_near)).then_some(())
     };
@@ -48,7 +48,7 @@ impl Observer for DecisionObserver {
 }
 
 /// Returns the scene with each position and velocity changed a little, up or down.
-fn shifted(scene: &Scene, seed: u64) -> Scene {
+fn shift(scene: &Scene, seed: u64) -> Scene {
     let mut scene = scene.clone();
     let mut bits = seed;
     for particle in &mut scene.particles {

@@ -73,7 +73,7 @@ pub(crate) fn numbers(scene: &mut Scene) -> Vec<(SceneNumber, &mut f64)> {
 }
 
 /// Returns the scene with each number replaced.
-fn mapped(scene: &Scene, mut replace: impl FnMut(SceneNumber, f64) -> f64) -> Scene {
+fn map_numbers(scene: &Scene, mut replace: impl FnMut(SceneNumber, f64) -> f64) -> Scene {
     let (mut scene, steps) = (scene.clone(), scene.steps());
     numbers(&mut scene).into_iter().for_each(|(quantity, value)| *value = replace(quantity, *value));
     set_steps(&mut scene, steps);
@@ -81,7 +81,7 @@ fn mapped(scene: &Scene, mut replace: impl FnMut(SceneNumber, f64) -> f64) -> Sc
 }
 
 /// Returns the number with this number of decimals.
-fn rounded(value: f64, decimals: usize) -> f64 {
+fn round_to(value: f64, decimals: usize) -> f64 {
     let rounded: f64 = format!("{value:.decimals$}").parse().unwrap_or(value);
     // Without the sign of a zero.
     rounded + 0.0
@@ -91,20 +91,20 @@ fn rounded(value: f64, decimals: usize) -> f64 {
 pub(crate) fn transformed(scene: &Scene) -> Vec<Scene> {
     let mut all = vec![scene.clone()];
     for radius in scene.particles.iter().map(|particle| particle.radius).chain(scene.edges.iter().map(|e| e.radius)) {
-        all.extend((radius != 1.0 && radius > 0.0).then(|| scaled(scene, 1.0 / radius, 1.0)));
+        all.extend((radius != 1.0 && radius > 0.0).then(|| scale(scene, 1.0 / radius, 1.0)));
     }
-    let in_seconds: Vec<Scene> = all.iter().map(|one| scaled(one, 1.0, 1.0 / one.time_step)).collect();
+    let in_seconds: Vec<Scene> = all.iter().map(|one| scale(one, 1.0, 1.0 / one.time_step)).collect();
     all.extend(in_seconds);
     // Bodies that move little in a step leave no room for round numbers.
     let is_velocity = |quantity| quantity == SceneNumber::Velocity;
     let faster = |scene: &Scene, factor: f64| {
-        mapped(scene, |quantity, value| if is_velocity(quantity) { factor * value } else { value })
+        map_numbers(scene, |quantity, value| if is_velocity(quantity) { factor * value } else { value })
     };
     let hurried: Vec<Scene> = all.iter().flat_map(|one| [2.0, 10.0, 100.0].map(|by| faster(one, by))).collect();
     all.extend(hurried);
-    let moved = all.iter().flat_map(|one| origins(one).into_iter().map(|origin| translated(one, origin)));
+    let moved = all.iter().flat_map(|one| origins(one).into_iter().map(|origin| translate(one, origin)));
     let all: Vec<Scene> = moved.collect();
-    let round = |scene: &Scene, decimals| mapped(scene, |_, value| rounded(value, decimals));
+    let round = |scene: &Scene, decimals| map_numbers(scene, |_, value| round_to(value, decimals));
     (0..=2).flat_map(|decimals| all.iter().map(move |one| round(one, decimals))).collect()
 }
 
@@ -115,9 +115,9 @@ fn origins(scene: &Scene) -> Vec<[f64; 2]> {
     places.map(|place| [place.x, place.y]).collect()
 }
 
-fn translated(scene: &Scene, origin: [f64; 2]) -> Scene {
+fn translate(scene: &Scene, origin: [f64; 2]) -> Scene {
     let mut component = 0;
-    mapped(scene, |quantity, value| {
+    map_numbers(scene, |quantity, value| {
         if quantity != SceneNumber::Place {
             return value;
         }
@@ -149,7 +149,7 @@ pub(crate) fn turned(scene: &Scene) -> Vec<Scene> {
 }
 
 /// Returns the scene with other units of length and of time; masses stay.
-fn scaled(scene: &Scene, length: f64, time: f64) -> Scene {
+fn scale(scene: &Scene, length: f64, time: f64) -> Scene {
     let mut scene = scene.clone();
     let steps = scene.steps();
     let pace = 1.0 / (time * time);
@@ -191,7 +191,7 @@ pub(crate) fn rounder(scene: &Scene, index: usize) -> Option<Vec<Scene>> {
     let (quantity, value) = numbers(&mut copy).into_iter().nth(index).map(|(quantity, value)| (quantity, *value))?;
     let whole = [value.trunc(), value.trunc() + value.signum()];
     let plain = [quantity.plain(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
-    let round = (0..=4).map(|decimals| rounded(value, decimals));
+    let round = (0..=4).map(|decimals| round_to(value, decimals));
     let with = |new: f64| {
         let (mut scene, steps) = (scene.clone(), scene.steps());
         *numbers(&mut scene).swap_remove(index).1 = new;
@@ -204,7 +204,7 @@ pub(crate) fn rounder(scene: &Scene, index: usize) -> Option<Vec<Scene>> {
 /// Returns the scene with numbers drawn from a few round ones, by this source of numbers.
 pub(crate) fn drawn(scene: &Scene, mut next: impl FnMut() -> u64) -> Scene {
     let mut pick = |from: &[f64]| from[(next() >> 33) as usize % from.len()];
-    mapped(scene, |quantity, value| match quantity {
+    map_numbers(scene, |quantity, value| match quantity {
         SceneNumber::Place => pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0]),
         SceneNumber::Velocity => pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 6.0, -1.0, -2.0, -3.0, -4.0, -6.0]),
         SceneNumber::Direction if value == 0.0 => pick(&[0.0, 0.0, 1.0]),

@@ -65,7 +65,7 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
         () if makes(StepMistake::SpringStrain) => (l - rest_length) / rest_length,
         () => l - rest_length,
     };
-    let tension = amended(student, Term::SpringElastic, stiffness * stretch, stretch);
+    let tension = amend(student, Term::SpringElastic, stiffness * stretch, stretch);
     world.contribute_opposite(g, Term::SpringElastic, (a, b), tension * n, l);
 
     let damping = if makes(StepMistake::SpringDampingNoCoefficient) { 1.0 } else { damping };
@@ -79,14 +79,14 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
         damping * w
     } else {
         let speed = n.dot(&w);
-        amended(student, Term::SpringDamping, damping * speed, speed) * n
+        amend(student, Term::SpringDamping, damping * speed, speed) * n
     };
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
 /// Returns the factor before a direction, for a student who takes its modulus, or a square as in the energy; `factor`
 /// is the squared quantity.
-fn amended(student: Student, term: Term, value: f64, factor: f64) -> f64 {
+fn amend(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
         () if student.slips_by(term, Slip::Absolute) => value.abs(),
         () if student.slips_by(term, Slip::Squared) => value * factor,

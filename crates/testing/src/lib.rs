@@ -105,7 +105,7 @@ impl fmt::Display for Need {
 pub fn skip(need: Need, why: impl fmt::Display) {
     let why = why.to_string().replace(['\n', '\t'], " ");
     let required = std::env::var(REQUIRE).unwrap_or_default();
-    if let Err(words) = allowed(need, &required) {
+    if let Err(words) = check_allowed(need, &required) {
         panic!("{words}: {why}");
     }
     let test = std::thread::current().name().unwrap_or("a test").to_owned();
@@ -118,7 +118,7 @@ pub fn skip(need: Need, why: impl fmt::Display) {
 }
 
 /// Checks that a test may be skipped for want of this.
-fn allowed(need: Need, required: &str) -> Result<(), String> {
+fn check_allowed(need: Need, required: &str) -> Result<(), String> {
     for word in required.split(',').map(str::trim).filter(|word| !word.is_empty()) {
         if word == "all" || word == need.name() {
             return Err(format!("{REQUIRE} asks for {need}, and it is not here"));
@@ -171,11 +171,11 @@ mod tests {
 
     #[test]
     fn what_is_required_may_not_be_skipped() {
-        assert_eq!(allowed(Need::Corpus, ""), Ok(()));
-        assert_eq!(allowed(Need::Corpus, "sandbox, cc"), Ok(()));
-        assert!(allowed(Need::Corpus, "sandbox,corpus").is_err());
-        assert!(allowed(Need::Corpus, "all").is_err());
-        let error = allowed(Need::Corpus, "sandobx").expect_err("no need");
+        assert_eq!(check_allowed(Need::Corpus, ""), Ok(()));
+        assert_eq!(check_allowed(Need::Corpus, "sandbox, cc"), Ok(()));
+        assert!(check_allowed(Need::Corpus, "sandbox,corpus").is_err());
+        assert!(check_allowed(Need::Corpus, "all").is_err());
+        let error = check_allowed(Need::Corpus, "sandobx").expect_err("no need");
         assert!(error.contains("`sandobx`") && error.contains("sandbox"), "{error}");
     }
 

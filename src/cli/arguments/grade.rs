@@ -147,22 +147,24 @@ pub(in crate::cli) struct GradeArguments {
 /// The greatest number of shards of a grading.
 pub(in crate::cli) const MOST_SHARDS: usize = 10_000;
 
-/// A part of the submissions: the `number`-th of `of`.
+/// A part of the submissions: the `number`-th of `total`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::cli) struct ShardArgument {
     /// The number of this part, from 1.
     pub(in crate::cli) number: usize,
     /// The number of parts.
-    pub(in crate::cli) of: usize,
+    pub(in crate::cli) total: usize,
 }
 
 impl FromStr for ShardArgument {
     type Err = &'static str;
 
     fn from_str(word: &str) -> Result<Self, Self::Err> {
-        let parts = word.split_once('/').and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        let parts = word.split_once('/').and_then(|(number, total)| Some((number.parse().ok()?, total.parse().ok()?)));
         match parts {
-            Some((number, of)) if (1..=of).contains(&number) && of <= MOST_SHARDS => Ok(Self { number, of }),
+            Some((number, total)) if (1..=total).contains(&number) && total <= MOST_SHARDS => {
+                Ok(Self { number, total })
+            }
             _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N, and N is 10000 at most"),
         }
     }

@@ -26,11 +26,11 @@ impl Closer<'_> {
         let hints = if self.plan.staff_hints < Hints::Full && of_trace { " --hints full" } else { "" };
         let alone = self.plan.scenes().count() == 1;
         if !alone || !hints.is_empty() {
-            lines.push(format!("$ {} --scene {}{hints}", self.command(submission), quoted(&scene.scene)));
+            lines.push(format!("$ {} --scene {}{hints}", self.command(submission), quote(&scene.scene)));
         }
         let kept = (self.trace)(&grade.submission, &scene.scene).filter(|trace| trace.exists());
         if let (Some(trace), Some(name)) = (kept, self.scene(&scene.scene)) {
-            lines.push(format!("$ fosssim-oracle check {} {}", quoted(&name), quoted(&trace.to_string_lossy())));
+            lines.push(format!("$ fosssim-oracle check {} {}", quote(&name), quote(&trace.to_string_lossy())));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
         if wrong > 1 && wrong == grade.scenes().count() && self.arguments.suite == Assignment::DEFAULT.key() {
@@ -64,21 +64,21 @@ impl Closer<'_> {
         };
         let output = output.as_ref().filter(|_| self.submissions.len() == 1);
         let options = [
-            (suite != Assignment::DEFAULT.key()).then(|| format!(" --suite {}", quoted(suite))),
+            (suite != Assignment::DEFAULT.key()).then(|| format!(" --suite {}", quote(suite))),
             rules.map(|_| format!(" --rules {}", self.plan.rules.name())),
-            (program != "FOSSSim").then(|| format!(" --program {}", quoted(program))),
-            output.map(|output| format!(" --output {}", quoted(&output.to_string_lossy()))),
+            (program != "FOSSSim").then(|| format!(" --program {}", quote(program))),
+            output.map(|output| format!(" --output {}", quote(&output.to_string_lossy()))),
             single.then(|| " --single".to_owned()),
             recorded.then(|| " --recorded".to_owned()),
             unsafe_no_sandbox.then(|| " --unsafe-no-sandbox".to_owned()),
         ];
         let options: String = options.into_iter().flatten().collect();
-        format!("fosssim-oracle grade {}{options}", quoted(&path.to_string_lossy()))
+        format!("fosssim-oracle grade {}{options}", quote(&path.to_string_lossy()))
     }
 }
 
 /// Returns a word as a shell takes it.
-fn quoted(word: &str) -> String {
+fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "-_./:=+,@".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {
         word.to_owned()

@@ -28,7 +28,7 @@ const NO_ANSWER: &str = "there is no answer: the numbers are too large or too sm
 pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
     match &arguments.scene {
         Some(scene) => detect_in_scene(arguments, scene),
-        None => show(arguments, &study(&typed(arguments)?)?, None, &[]),
+        None => show(arguments, &study(&parse_typed(arguments)?)?, None, &[]),
     }
 }
 
@@ -71,7 +71,7 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
 }
 
 /// Returns the pair whose numbers were typed.
-fn typed(arguments: &DetectArguments) -> Result<PairMotion> {
+fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in a scene \
                            (--scene, --step, --pair)";
     let word = arguments.word.as_deref().context(NOTHING)?;
@@ -91,11 +91,11 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let mut inputs: Vec<_> = scene.identity.into_iter().collect();
     let (before, traced) = match &arguments.trace {
         Some(trace) => {
-            let traced = traced(&scene, trace, step)?;
+            let traced = read_traced(&scene, trace, step)?;
             inputs.extend(traced.identity);
             (traced.before.clone(), Some(traced))
         }
-        None => (simulated(&scene, step)?, None),
+        None => (simulate_to(&scene, step)?, None),
     };
     if matches!(scene.scene.collision, Collision::Simple { .. }) {
         let found = OverlapStudy::for_pair(&scene.scene, step, &before, pair);
@@ -130,7 +130,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
 }
 
 /// Returns the state before a step of the reference's run.
-fn simulated(scene: &SceneInput, step: u32) -> Result<State> {
+fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
     let mut simulation = Simulation::new(&scene.scene, RootSearch::WhereNeeded);
     for _ in 1..step {
         if let Err(error) = simulation.step(&mut ()) {
@@ -150,7 +150,7 @@ struct TracedStep {
     identity: Option<Identity>,
 }
 
-fn traced(scene: &SceneInput, name: &Path, step: u32) -> Result<TracedStep> {
+fn read_traced(scene: &SceneInput, name: &Path, step: u32) -> Result<TracedStep> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(&scene.scene);
     let mut reader = trace.records(&scene.scene);

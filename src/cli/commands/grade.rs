@@ -37,9 +37,9 @@ use crate::{
         Cancellation, EarlierGrade, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
         batch::{self, BatchResult},
         cards::JudgedTrace,
+        catch_panic,
         config::{Hints, Visibility},
         grader::Options,
-        guarded,
         plan::{self, Plan},
         results::FolderResults,
         smallest::ShrunkScene,
@@ -235,12 +235,13 @@ impl GradingSession<'_> {
         let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
         let program = format!("./{}", self.arguments.program);
         let smallest = |small: &ShrunkScene, students: Hints| {
-            shrink::graded(small, &program, [self.plan.staff_hints, students], self.pages.as_ref())
+            shrink::describe_for_grade(small, &program, [self.plan.staff_hints, students], self.pages.as_ref())
         };
         let log_error = OnceLock::new();
         let finish = |grade: &Grade| {
             if let (Some(folder), None) = (&self.folder, log_error.get())
-                && let Err(error) = guarded(|| write_logs(folder, grade)).unwrap_or_else(|fault| Err(anyhow!(fault)))
+                && let Err(error) =
+                    catch_panic(|| write_logs(folder, grade)).unwrap_or_else(|fault| Err(anyhow!(fault)))
             {
                 let _ = log_error.set(error);
             }
@@ -356,10 +357,10 @@ fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
         Some(program) => submission.path.join(program),
         None => submission.path.clone(),
     };
-    submissions.iter().map(|submission| newest(&program(submission), &mut 20_000)).collect()
+    submissions.iter().map(|submission| find_newest(&program(submission), &mut 20_000)).collect()
 }
 
-fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
+fn find_newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     *budget = budget.checked_sub(1)?;
     let data = fs::symlink_metadata(path).ok()?;
     let data = if data.is_symlink() { fs::metadata(path).ok()? } else { data };
@@ -367,7 +368,7 @@ fn newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     if !data.is_dir() {
         return Some(own);
     }
-    let below = fs::read_dir(path).ok()?.flatten().filter_map(|entry| newest(&entry.path(), budget));
+    let below = fs::read_dir(path).ok()?.flatten().filter_map(|entry| find_newest(&entry.path(), budget));
     Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
@@ -378,7 +379,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     if let Some(build) = &grade.build {
         text += &format!("{}\n\n{}\n", words::build(&build.end), printed(&build.output));
     }
-    if let Some(unfit) = words::unfit(grade) {
+    if let Some(unfit) = words::describe_unfit(grade) {
         text += &format!("{}\n", plain(&unfit));
     }
     let never_ran = |verdict| matches!(verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError);

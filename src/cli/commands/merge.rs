@@ -123,7 +123,7 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
             grade.submission
         );
     }
-    let of = first.common.of;
+    let of = first.common.total;
     let mut missing = Vec::new();
     for number in 1..=of {
         let found: Vec<String> = parts

@@ -12,8 +12,8 @@ use crate::{
     suite::{
         Grade, PassedOver,
         cards::{self, Cards, Draw, JudgedTrace},
+        catch_panic,
         config::Hints,
-        guarded,
     },
 };
 use anyhow::{Context, Result};
@@ -124,7 +124,7 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
         return None;
     }
     if recorded {
-        let again = guarded(|| {
+        let again = catch_panic(|| {
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
             examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
@@ -134,8 +134,8 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
         return draw(&own, false).map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
     }
     // A picture that can't be made costs no points.
-    let card = guarded(|| card(judged, None, 3)).unwrap_or_else(|fault| {
-        Some(Card::saying(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
+    let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
+        Some(Card::from_words(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
     let cut = "The trace is longer than what the grader keeps of it: the pictures end where that ends.";
     card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.kept())

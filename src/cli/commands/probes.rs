@@ -75,7 +75,7 @@ impl ProgramUnderTest {
     /// Creates a program that can be run. Without a suite it belongs to the milestone that it looks like.
     pub(super) fn new(program: &Path, suite: Option<&str>, unsafe_no_sandbox: bool) -> Result<Self> {
         let mut ready = Self {
-            program: placed(program),
+            program: make_absolute(program),
             assignment: Assignment::DEFAULT,
             cancellation: cancelled_by_signals(),
             plan: plan::find(suite.unwrap_or(Assignment::DEFAULT.key()))?,
@@ -177,11 +177,11 @@ impl ProgramUnderTest {
                  the loop that does not end\n"
             ));
         }
-        let (common, refuted) = likely(self.assignment, &cases, &tasks);
+        let (common, refuted) = find_likely(self.assignment, &cases, &tasks);
         for case in &mut cases {
             case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
         }
-        let located = located(&tasks, &ends);
+        let located = locate_failures(&tasks, &ends);
         Ok(Some(ExaminedProgram {
             diagnosis: Diagnosis { cases, common, located, smallest: Vec::new() },
             cards,
@@ -244,7 +244,7 @@ pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
 
 /// Returns a program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays,
 /// also that of a link: programs may depend on the name by which they are called.
-fn placed(program: &Path) -> PathBuf {
+fn make_absolute(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {
         (Ok(folder), Some(name)) => folder.join(name),
@@ -257,7 +257,7 @@ fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,
         (ended, false) => Some(format!("the program {ended}")),
-        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", said(stderr))),
+        (ended, true) => Some(format!("the program {ended} and wrote no trace{}", last_line(stderr))),
     }
 }
 
@@ -272,7 +272,7 @@ fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
 }
 
 /// Returns the last line of a program's error output, if it wrote one.
-fn said(stderr: &[u8]) -> String {
+fn last_line(stderr: &[u8]) -> String {
     let text = printed(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
     last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
@@ -280,7 +280,7 @@ fn said(stderr: &[u8]) -> String {
 
 /// Returns the properties that the failing scenes have in common, by the end of the program in each and the number of
 /// complete steps.
-fn located(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure> {
+fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure> {
     let ends: Vec<_> = ends.iter().map(|(ended, steps)| (FailureKind::from_end(ended), *steps)).collect();
     if ends.iter().all(|(failing, _)| failing.is_none()) {
         return None;
@@ -293,7 +293,7 @@ fn located(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure
 }
 
 /// Returns the likely mistakes of the wrong traces together, and the keys of those that are ruled out.
-fn likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
+fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
     let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
     let wrong: Vec<(&Scene, &[Explanation])> =
         wrong.into_iter().map(|(case, task)| (&task.scene, case.explanations.as_slice())).collect();

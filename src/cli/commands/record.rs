@@ -20,7 +20,7 @@ pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
     // A folder that was named is used even if it does not exist.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
-    let scenes = if embedded { bundled() } else { scenes(&arguments.assets)? };
+    let scenes = if embedded { list_bundled() } else { scenes(&arguments.assets)? };
     let mut recordings = Vec::new();
     for Input { name, stem, xml } in scenes {
         recordings.push((stem, Recording::for_scene(&name, &xml).with_context(|| format!("cannot record {name}"))?));
@@ -40,7 +40,7 @@ struct Input {
 }
 
 /// Returns the embedded scenes. Their recordings are requested by name.
-fn bundled() -> Vec<Input> {
+fn list_bundled() -> Vec<Input> {
     let input =
         |name: &str| Some(Input { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() });
     library::names().filter_map(input).collect()

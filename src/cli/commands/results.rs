@@ -4,7 +4,7 @@ use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{Place, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
-    suite::{Grade, PassedOver, guarded},
+    suite::{Grade, PassedOver, catch_panic},
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -138,7 +138,7 @@ impl Results<'_> {
             // All cores write: for a large class the jobs would wait for this.
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
-            let write_pages = |pages: &Pages| made("the pages", || pages.write(grades, passed_over, self.reader));
+            let write_pages = |pages: &Pages| make("the pages", || pages.write(grades, passed_over, self.reader));
             let (tables, first) = rayon::join(write_tables, || self.pages.map_or(Ok(Ok(None)), write_pages));
             tables.into_iter().for_each(&mut keep);
             keep(first.and_then(|first| first).map(|first| {
@@ -164,9 +164,9 @@ impl Results<'_> {
             };
             match (&report.file, report.format) {
                 (None, Format::Text) => {
-                    keep(made("the report", || text(grades)).and_then(|text| console::report(&text)));
+                    keep(make("the report", || text(grades)).and_then(|text| console::report(&text)));
                 }
-                (None, _) => keep(made("the report", render).and_then(|text| console::print(text.as_bytes()))),
+                (None, _) => keep(make("the report", render).and_then(|text| console::print(text.as_bytes()))),
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
                 (Some(file), _) => {
                     keep(write(file, render).map(|()| output::say_where(file, report.format == Format::Html)))
@@ -198,7 +198,7 @@ fn is_step_summary(file: &Path) -> bool {
 
 /// Makes a text and appends it to a file.
 fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
-    let text = made(&file.display().to_string(), text)?;
+    let text = make(&file.display().to_string(), text)?;
     let opened = open_for_writing(fs::OpenOptions::new().create(true).append(true), file);
     let written = opened.and_then(|mut file| file.write_all(text.as_bytes()));
     written.with_context(|| format!("cannot write {}", file.display()))
@@ -206,18 +206,18 @@ fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
 
 /// Makes a text and writes it.
 fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
-    let text = made(&file.display().to_string(), text)?;
+    let text = make(&file.display().to_string(), text)?;
     output::write(file, text.as_bytes())
 }
 
 /// Makes a text and writes it into the folder for results.
 fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<()> {
     let place = Place::new(folder, name);
-    let text = made(&place.path().display().to_string(), text)?;
+    let text = make(&place.path().display().to_string(), text)?;
     output::write_at(&place, text.as_bytes())
 }
 
 /// Returns a text, or the fault that the grader had while making it.
-fn made<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
-    guarded(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
+fn make<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
+    catch_panic(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }

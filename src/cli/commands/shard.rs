@@ -33,7 +33,8 @@ pub(super) struct SharedInputs {
     /// The grader itself, digested: two builds of one version may judge differently.
     grader: String,
     /// The number of shards.
-    pub(super) of: usize,
+    #[serde(rename = "of")]
+    pub(super) total: usize,
     /// The suite's name.
     pub(super) suite: String,
     /// The digest of all that results depend on in addition to the programs.
@@ -48,7 +49,7 @@ impl SharedInputs {
         [
             (self.schema == other.schema && self.version == other.version, "the grader's version differs"),
             (self.grader == other.grader, "the build of the grader differs"),
-            (self.of == other.of, "the number of shards differs"),
+            (self.total == other.total, "the number of shards differs"),
             (
                 self.suite == other.suite && self.plan == other.plan,
                 "the suite, or an option that results depend on, differs",
@@ -99,10 +100,10 @@ impl Part {
         if common.schema != SCHEMA {
             bail!("it is of schema {}, and this program reads {SCHEMA}", common.schema);
         }
-        if !(1..=MOST_SHARDS).contains(&common.of) || !(1..=common.of).contains(&self.number) {
-            bail!("there is no shard {} of {}; there are at most {MOST_SHARDS}", self.number, common.of);
+        if !(1..=MOST_SHARDS).contains(&common.total) || !(1..=common.total).contains(&self.number) {
+            bail!("there is no shard {} of {}; there are at most {MOST_SHARDS}", self.number, common.total);
         }
-        let own = own(self.number, common.of, &common.submissions);
+        let own = select_own(self.number, common.total, &common.submissions);
         if !own.eq(self.grades.iter().map(|grade| &grade.submission)) {
             bail!("it grades other submissions than its own");
         }
@@ -117,7 +118,7 @@ impl Part {
 
 /// Returns a shard's own entries of a list: every N-th one. Neighbors in the alphabet may have worked together and
 /// share slow programs, so they are sent to different machines.
-fn own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
+fn select_own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }
 
@@ -144,18 +145,18 @@ impl Sharding {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION").to_owned(),
             grader: this_build().to_owned(),
-            of: shard.of,
+            total: shard.total,
             suite: plan.name.clone(),
             plan: digest(plan, arguments),
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
-        let begun = Place::new(output, format!("shard-{}-of-{}", shard.number, shard.of));
+        let begun = Place::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
         Self { shard, common, folder: begun.path(), begun }
     }
 
     /// Returns the shard's own submissions.
     pub(super) fn part(&self, all: Vec<Submission>) -> Vec<Submission> {
-        own(self.shard.number, self.shard.of, &all).cloned().collect()
+        select_own(self.shard.number, self.shard.total, &all).cloned().collect()
     }
 
     /// Makes the shard's folder; what an earlier grading left there is not this one's end.
@@ -177,7 +178,7 @@ impl Sharding {
         let part = Part { common, number, grades: grades.to_vec(), passed_over };
         output::write_at(&Place::new(&self.folder, FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
-        console::remark(format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.of));
+        console::remark(format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.total));
         Ok(())
     }
 }
@@ -221,7 +222,7 @@ mod tests {
     fn every_submission_belongs_to_one_shard() {
         let all: Vec<usize> = (0..23).collect();
         for of in 1..30 {
-            let mut shared: Vec<usize> = (1..=of).flat_map(|number| own(number, of, &all).copied()).collect();
+            let mut shared: Vec<usize> = (1..=of).flat_map(|number| select_own(number, of, &all).copied()).collect();
             shared.sort_unstable();
             assert_eq!(shared, all, "{of}");
         }
@@ -229,7 +230,7 @@ mod tests {
 
     #[test]
     fn a_shard_is_one_of_so_many() {
-        assert_eq!("2/8".parse(), Ok(ShardArgument { number: 2, of: 8 }));
+        assert_eq!("2/8".parse(), Ok(ShardArgument { number: 2, total: 8 }));
         for word in ["0/8", "9/8", "2", "2/", "/8", "-1/8", "2/0", "a/b", "1/2/3"] {
             assert!(word.parse::<ShardArgument>().is_err(), "{word}");
         }

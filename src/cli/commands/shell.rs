@@ -14,7 +14,7 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
     if arguments.shell == Shell::Bash {
-        script = mended(&script);
+        script = mend(&script);
     }
     console::print(&script)
 }
@@ -22,7 +22,7 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
 /// Returns a bash script whose labels match their uses. clap writes a hyphen in the program's name once as `__` and
 /// once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a hyphen, or
 /// when clap is mended, nothing changes.
-fn mended(script: &[u8]) -> Vec<u8> {
+fn mend(script: &[u8]) -> Vec<u8> {
     let (asked, written) = (NAME.replace('-', "__"), NAME.replace('-', "__subcmd__"));
     String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
 }

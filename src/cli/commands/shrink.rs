@@ -69,7 +69,7 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let Diagnosis { smallest, .. } = &examined.diagnosis;
     let mut texts = Vec::new();
     for (number, small) in smallest.iter().enumerate() {
-        let file = arguments.output.as_deref().map(|name| numbered(name, number));
+        let file = arguments.output.as_deref().map(|name| number_file(name, number));
         if let Some(name) = &file {
             Output::create(name, &[])?.finish_with(small.xml.as_bytes())?;
         }
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
 }
 
 /// Returns the name of the file for a further scene: `small-2.xml` behind `small.xml`.
-fn numbered(name: &Path, number: usize) -> std::path::PathBuf {
+fn number_file(name: &Path, number: usize) -> std::path::PathBuf {
     let Some(stem) = name.file_stem().filter(|_| number > 0) else { return name.to_owned() };
     let extension = name.extension().map(|end| format!(".{}", end.to_string_lossy())).unwrap_or_default();
     name.with_file_name(format!("{}-{}{extension}", stem.to_string_lossy(), number + 1))
@@ -138,7 +138,12 @@ pub(super) fn add_smallest(
 
 /// Returns the report on a smallest scene in a grade, with its cards among the pages'. The hints are those of staff and
 /// students.
-pub(super) fn graded(small: &ShrunkScene, program: &str, hints: [Hints; 2], pages: Option<&Pages>) -> SmallestScene {
+pub(super) fn describe_for_grade(
+    small: &ShrunkScene,
+    program: &str,
+    hints: [Hints; 2],
+    pages: Option<&Pages>,
+) -> SmallestScene {
     let has_pictures = pages.is_some();
     let [(mut for_staff, card), (_, own)] =
         hints.map(|hints| describe(small, program, Drawing { hints, has_pictures }));

@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are reported
     /// and skipped: hidden ones, results of gradings, and links, which could lead to another's submission.
     fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
-        let paths = listed(folder, MOST_ENTRIES)?;
+        let paths = list_entries(folder, MOST_ENTRIES)?;
         let holds_results = self.is_results(folder);
         let before = found.len();
         for path in &paths {
@@ -172,7 +172,7 @@ impl<'a> Search<'a> {
 }
 
 /// Returns the paths of a folder's entries, in alphabetical order.
-fn listed(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
+fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = listing
         .take(most + 1)
@@ -314,8 +314,8 @@ mod tests {
         for name in ["c", "a", "b"] {
             fs::write(folder.path().join(name), "").unwrap();
         }
-        assert_eq!(listed(folder.path(), 3).unwrap(), ["a", "b", "c"].map(|name| folder.path().join(name)));
-        assert!(listed(folder.path(), 2).unwrap_err().to_string().contains("more than 2 entries"));
+        assert_eq!(list_entries(folder.path(), 3).unwrap(), ["a", "b", "c"].map(|name| folder.path().join(name)));
+        assert!(list_entries(folder.path(), 2).unwrap_err().to_string().contains("more than 2 entries"));
     }
 
     #[test]

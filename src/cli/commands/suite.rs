@@ -28,7 +28,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
             let plan = plan::find(suite)?;
             let parts = if *mistakes { seen_parts(&plan) } else { Vec::new() };
             let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing, parts };
-            console::report(&text(&plan, &contents, &undecided(&plan), console::style()))
+            console::report(&text(&plan, &contents, &find_undecided(&plan), console::style()))
         }
         SuiteCommand::List(SuiteListArguments { format }) => {
             let suites = built_in()?;
@@ -52,7 +52,7 @@ fn built_in() -> Result<Vec<(String, plan::Plan)>> {
 }
 
 /// Runs the reference on every scene, on all cores, and keeps those with undecided ones.
-fn undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
+fn find_undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().map(|task| (task.name.clone(), borderline(&task.scene)));
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()

@@ -53,7 +53,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
         0 => String::new(),
         notes => format!("; {} above", counted(notes as u64, "note")),
     };
-    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is valid"), size(plan));
+    let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is valid"), describe_size(plan));
     text
 }
 
@@ -64,7 +64,7 @@ const SCHEMA: u32 = 2;
 pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
-        let size = style.paint(Look::Faint, &format!("({})", size(plan)));
+        let size = style.paint(Look::Faint, &format!("({})", describe_size(plan)));
         let default = if *name == default_name() { ", the default" } else { "" };
         format!("{name:width$}  {}{default} {size}\n", plan.name)
     };
@@ -92,7 +92,7 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
 }
 
 /// Returns `12 scenes, 100 points`.
-fn size(plan: &Plan) -> String {
+fn describe_size(plan: &Plan) -> String {
     format!("{}, {}", counted(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
 }
 
@@ -123,7 +123,7 @@ const fn credit(credit: Credit) -> &'static str {
 
 fn head(plan: &Plan, style: Style) -> String {
     let mut text = String::new();
-    let _ = writeln!(text, "{}: {}", style.paint(Look::Strong, &one_line(&plan.name)), size(plan));
+    let _ = writeln!(text, "{}: {}", style.paint(Look::Strong, &one_line(&plan.name)), describe_size(plan));
     let _ = writeln!(text, "run: {}", one_line(&plan.run.join(" ")));
     if let Some(build) = &plan.build {
         let _ = writeln!(

@@ -12,7 +12,8 @@ use crate::{
     files::{FileError, Folder},
     report::{foreign::one_line, number::counted},
     suite::{
-        EarlierGrade, Grade, SceneResult, SceneTask, cards::JudgedTrace, guarded, plan::Plan, result::Failure, traces,
+        EarlierGrade, Grade, SceneResult, SceneTask, cards::JudgedTrace, catch_panic, plan::Plan, result::Failure,
+        traces,
     },
 };
 use anyhow::{Context, Result, bail};
@@ -113,7 +114,7 @@ type JudgedScene = (SceneResult, Option<String>);
 
 /// Returns the result of one scene. A panic is its judge error.
 fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
-    let failure = match folder.as_ref().map(|folder| guarded(|| judge(plan, task, folder, pages))) {
+    let failure = match folder.as_ref().map(|folder| catch_panic(|| judge(plan, task, folder, pages))) {
         Ok(Ok(Ok(judged))) => return judged,
         Ok(Ok(Err(error))) => Failure::Machine(error.to_string()),
         Ok(Err(fault)) => Failure::Panic { stage: None, fault: fault.to_string(), trace: None },

@@ -80,7 +80,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         (Box::new(library::FLAWED.1), None)
     } else if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
-        (decompressed(Box::new(Cursor::new(recording)), &[], &failure)?, None)
+        (decompress(Box::new(Cursor::new(recording)), &[], &failure)?, None)
     } else if name == Path::new("-") {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?, None)
@@ -150,7 +150,7 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
     if start == ZSTD_MAGIC {
-        return decompressed(reader, &start, failure);
+        return decompress(reader, &start, failure);
     }
     if is_gzip(&start) {
         let decoder = flate2::read::MultiGzDecoder::new(Cursor::new(start).chain(reader));
@@ -180,7 +180,7 @@ pub(in crate::cli) fn unpacked(file: impl Read + Send + 'static, most: u64) -> i
     }
 }
 
-fn decompressed(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> Result<Box<dyn Read + Send>> {
+fn decompress(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let packed = BufReader::with_capacity(1 << 16, Cursor::new(start.to_vec()).chain(reader));
     let mut decoder = zstd::stream::read::Decoder::with_buffer(packed)?;
     decoder.window_log_max(ZSTD_WINDOW)?;

@@ -6,7 +6,7 @@ use super::{
     cancellation::Cancellation,
     grade::Grade,
     grader::{Grader, SceneNews, SharedGrading, Submission, SubmissionGrading},
-    guard::{Fault, guarded},
+    guard::{Fault, catch_panic},
     results::{KeepError, Results},
     task::SceneTask,
     temporary,
@@ -88,7 +88,7 @@ pub fn run(
         submissions.iter().map(|submission| SubmissionGrading::new(grader, &shared, submission)).collect();
     let mut telling = None;
     let mut tell = |event: Event<'_>| {
-        if let Err(panic) = guarded(|| on_event(event)) {
+        if let Err(panic) = catch_panic(|| on_event(event)) {
             telling.get_or_insert(panic);
         }
     };

@@ -4,7 +4,7 @@ use crate::{
     execute::Runner,
     grade::Grade,
     grader::{SubmissionGrading, lock},
-    guard::guarded,
+    guard::catch_panic,
     located::{Contents, FailureKind, LocatedFailure, TriedScene, locate},
     milestone, one_file, patience,
     plan::PlannedGroup,
@@ -75,7 +75,7 @@ impl SubmissionGrading<'_> {
         settle(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
             // A fault here is no reason to lose the grade.
-            grade.smallest = guarded(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
+            grade.smallest = catch_panic(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
         }
         grade
     }

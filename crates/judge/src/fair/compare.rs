@@ -256,11 +256,11 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         return Ok(found);
     }
     // One wrong coefficient spoils the fit; the factor on which most coefficients agree shows which one it is.
-    let mut best = (wrong(right, logged, missing, fitted), first);
+    let mut best = (count_wrong(right, logged, missing, fitted), first);
     for (r, s) in right.iter().zip(logged).skip(missing) {
         let scale = s / r.value;
         if scale > 0.0 && scale.is_finite() && is_significant(r) {
-            let count = wrong(right, logged, missing, scale);
+            let count = count_wrong(right, logged, missing, scale);
             if count < best.0 {
                 best = (count, matched(scale));
             }
@@ -395,7 +395,7 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
 }
 
 /// Returns the number of coefficients that are wrong with this factor.
-fn wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
+fn count_wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
     let norm = norm(right);
     let all = right.iter().zip(logged).enumerate();
     all.filter(|&(k, (r, &s))| check(r, s, norm, k < missing, scale).is_err()).count()

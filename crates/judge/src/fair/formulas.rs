@@ -194,7 +194,7 @@ impl BoundedPairMotion {
                 expected.right_approach = Some(right);
             }
             Self::HalfPlane(way, radius, point, q) => {
-                let (q, point) = (turned(q), turned(point));
+                let (q, point) = (turn(q), turn(point));
                 let (overlap, approach) = particle_half_plane(way.start, way.shift, radius, point, q, q.dot(q));
                 expected.set(0, &overlap);
                 expected.set(1, &approach);
@@ -248,8 +248,8 @@ impl BoundedPairMotion {
                 x2 + (a.dot(b) / b.dot(b)) * b - x1
             }
             Self::HalfPlane(way, _, point, q) => {
-                let q = turned(*q);
-                let w = turned(*point) - place(way);
+                let q = turn(*q);
+                let w = turn(*point) - place(way);
                 (w.dot(q) / q.dot(q)) * q
             }
         }
@@ -263,7 +263,7 @@ fn within(v: Vec2, size: f64) -> BoundedVector {
 }
 
 /// Returns a vector that the scene gives, in axes of any direction.
-fn turned(v: Vec2) -> BoundedVector {
+fn turn(v: Vec2) -> BoundedVector {
     within(v, extent(v))
 }
 

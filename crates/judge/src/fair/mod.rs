@@ -61,4 +61,4 @@ pub(super) use probe::{RUNS as PERTURBED_RUNS, perturb};
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;
-pub use unapplied::applied;
+pub use unapplied::count_applications;

@@ -47,7 +47,7 @@ impl NearPair {
 /// Returns how many times a step from `before` applied the force of each near pair: never, once or twice. The reference
 /// ends in `own`. Pairs whose velocities do not show it are left out.
 #[must_use]
-pub fn applied(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
+pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
     let tolerances = Tolerances::from_context(&context, own, None);
     let Some(near) = NearPairs::find(scene, &tolerances, before, own, logged) else { return Vec::new() };

@@ -78,7 +78,7 @@ fn main() -> anyhow::Result<ExitCode> {
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
     let uncaught = mistakes(&rows, &matrix, FAIR, false).len();
-    let accuses = !accused(FAIR, &rows, &cases, &matrix).is_empty();
+    let accuses = !find_accused(FAIR, &rows, &cases, &matrix).is_empty();
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
 }
 
@@ -86,13 +86,13 @@ fn main() -> anyhow::Result<ExitCode> {
 fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool) -> Vec<&'static str> {
     rows.iter()
         .zip(matrix)
-        .filter(|(row, cells)| row.kind == RowKind::Wrong && caught == cells.iter().any(|cell| refused(cell, book)))
+        .filter(|(row, cells)| row.kind == RowKind::Wrong && caught == cells.iter().any(|cell| is_rejected(cell, book)))
         .map(|(row, _)| row.id)
         .collect()
 }
 
 /// Returns the correct variants that a rule book rejects, each with the scene.
-fn accused<'a>(
+fn find_accused<'a>(
     book: usize,
     rows: &[&'a Row],
     cases: &'a [WatchedScene],
@@ -102,7 +102,7 @@ fn accused<'a>(
         .zip(matrix)
         .filter(|(row, _)| row.kind == RowKind::Variant)
         .flat_map(|(row, cells)| cases.iter().zip(cells).map(move |(case, cell)| (*row, case, cell)))
-        .filter(|(.., cell)| refused(cell, book))
+        .filter(|(.., cell)| is_rejected(cell, book))
         .map(|(row, case, _)| (row, case.name.as_str()))
         .collect()
 }
@@ -117,13 +117,13 @@ fn cell(case: &WatchedScene, row: &Row) -> MatrixCell {
 }
 
 /// Returns whether this rule book rejects the trace.
-fn refused(cell: &MatrixCell, book: usize) -> bool {
+fn is_rejected(cell: &MatrixCell, book: usize) -> bool {
     cell[book] == Answer::Refused
 }
 
 fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], matrix: &[Vec<MatrixCell>]) {
     println!(
-        "rules: {name}\n  . the correct trace   - another trace, accepted   X refused   l lost coefficients change a decision\n"
+        "rules: {name}\n  . the correct trace   - another trace, accepted   X rejected   l lost coefficients change a decision\n"
     );
     for (index, case) in cases.iter().enumerate() {
         println!("  {index:3} {}", case.name);
@@ -145,11 +145,11 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], ma
     println!("  {} mistakes caught\n", mistakes(rows, matrix, book, true).len());
     print_list("mistakes that no scene catches", &mistakes(rows, matrix, book, false));
     let mut scenes: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for (row, scene) in accused(book, rows, cases, matrix) {
+    for (row, scene) in find_accused(book, rows, cases, matrix) {
         scenes.entry(row.id).or_default().push(scene);
     }
     let accused: Vec<String> = scenes.iter().map(|(id, scenes)| format!("{id}: {}", scenes.join(", "))).collect();
-    print_list("correct variants that a scene refuses", &accused);
+    print_list("correct variants that a scene rejects", &accused);
     let subset: Vec<&str> =
         sufficient(book, rows, cases.len(), matrix).into_iter().map(|index| cases[index].name.as_str()).collect();
     print_list("scenes that together catch all of these mistakes", &subset);
@@ -167,7 +167,9 @@ fn print_list(title: &str, names: &[impl Display]) {
 /// at the end superfluous scenes are removed.
 fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
-        (0..rows.len()).filter(|&row| rows[row].kind == RowKind::Wrong && refused(&matrix[row][scene], book)).collect()
+        (0..rows.len())
+            .filter(|&row| rows[row].kind == RowKind::Wrong && is_rejected(&matrix[row][scene], book))
+            .collect()
     };
     let caught: Vec<BTreeSet<usize>> = (0..scenes).map(caught).collect();
     let union = |chosen: &BTreeSet<usize>| -> BTreeSet<usize> {

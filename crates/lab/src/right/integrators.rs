@@ -40,7 +40,7 @@ pub(super) fn advance(
             let mut x = state.x.clone();
             add(&mut x, &state.v);
             let force = forces.at(&x, &state.v);
-            let right = free(scene, force.iter().map(|force| h * force).collect());
+            let right = clear_fixed(scene, force.iter().map(|force| h * force).collect());
             let change = solve(arithmetic.solver, forces.system(&x, &state.v)?, right)?;
             state.v.iter_mut().zip(&change).for_each(|(v, change)| *v += change);
             add(&mut state.x, &state.v);
@@ -54,7 +54,7 @@ pub(super) fn advance(
                 add(&mut x, &v);
                 let force = forces.at(&x, &v);
                 let right = (0..v.len()).map(|k| h * force[k] - mass(scene, k / 2) * (v[k] - state.v[k])).collect();
-                let change = solve(arithmetic.solver, forces.system(&x, &v)?, free(scene, right))?;
+                let change = solve(arithmetic.solver, forces.system(&x, &v)?, clear_fixed(scene, right))?;
                 v.iter_mut().zip(&change).for_each(|(v, change)| *v += change);
                 let squares: f64 = change.iter().map(|change| change * change).sum();
                 if !(squares.sqrt() >= NEWTON_UPDATE) {
@@ -74,11 +74,11 @@ pub(super) fn advance(
 
 fn accelerations(scene: &Scene, forces: &mut ForceTerms<'_>, state: &State) -> Vec<f64> {
     let force = forces.at(&state.x, &state.v);
-    free(scene, (0..force.len()).map(|k| force[k] / mass(scene, k / 2)).collect())
+    clear_fixed(scene, (0..force.len()).map(|k| force[k] / mass(scene, k / 2)).collect())
 }
 
 /// Returns the entries with zeros for fixed particles.
-fn free(scene: &Scene, mut values: Vec<f64>) -> Vec<f64> {
+fn clear_fixed(scene: &Scene, mut values: Vec<f64>) -> Vec<f64> {
     values.iter_mut().enumerate().filter(|(k, _)| scene.particles[k / 2].fixed).for_each(|(_, value)| *value = 0.0);
     values
 }

@@ -163,12 +163,12 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
         let &(trace, place) = best.symptoms.first()?;
         return Some(as_row(&open[trace].symptoms[place].one, find(word)?, same_as));
     };
-    Some(Explanation { same_as, ..united(told, open) })
+    Some(Explanation { same_as, ..unite(told, open) })
 }
 
 /// Returns an explanation with the polynomials of all traces that report the same, and with only those exact forms that
 /// all of them allow.
-fn united(told: &Explanation, open: &[OpenTrace]) -> Explanation {
+fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.said();
     // Nothing of a contradicting trace is reproduced.

@@ -79,7 +79,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
     }
     near::unite(&mut found, &traces);
     let end = not_finite(&traces).filter(|one| !refuted.contains(&one.key));
-    unfinished(empty).into_iter().chain(found).chain(end).collect()
+    unite_unfinished(empty).into_iter().chain(found).chain(end).collect()
 }
 
 /// Returns the first values that are not numbers, in the stage in which most traces have them.
@@ -121,7 +121,7 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
 
 /// Returns several stages that are still empty as one explanation; their keys are in [`Explanation::same_as`]. A stage
 /// for which there is another explanation is reported by itself.
-fn unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
+fn unite_unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
     let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
     let (doubted, sure): (Vec<Explanation>, Vec<Explanation>) = empty.into_iter().partition(has_rival);
     if sure.len() < 2 {

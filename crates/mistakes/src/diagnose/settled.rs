@@ -16,10 +16,13 @@ pub struct SettledTrace {
 /// trace keeps its own, without those that are `refuted`.
 #[must_use]
 pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
-    let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| agreed(own, one));
+    let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreed(own, one));
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
-        return SettledTrace { explanations: own.iter().filter_map(|one| without(one, refuted)).collect(), agreed: 0 };
+        return SettledTrace {
+            explanations: own.iter().filter_map(|one| remove_refuted(one, refuted)).collect(),
+            agreed: 0,
+        };
     }
     // Each trace reports for itself where values stop being numbers.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
@@ -27,7 +30,7 @@ pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) 
 }
 
 /// Returns the explanation without refuted parts; `None` if no part is left.
-fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
+fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     let mut same_as = one.same_as.iter().filter(|key| !refuted.contains(key)).cloned();
     if !refuted.contains(&one.key) || one.is_not_finite() {
         return Some(Explanation { same_as: same_as.collect(), ..one.clone() });
@@ -37,7 +40,7 @@ fn without(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
 }
 
 /// Returns this explanation as the trace shows it; `None` if the trace's own ones do not name it.
-fn agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
+fn find_agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
         // Each trace may show more of them.
         return Vec::new();

@@ -86,7 +86,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     /// Returns the text of a required attribute.
     pub(super) fn text(&mut self, name: &str, what: &str) -> Option<String> {
         let attribute = self.required(name, what)?;
-        let text = self.decoded(attribute)?.into_owned();
+        let text = self.decode(attribute)?.into_owned();
         if attribute.value.contains('\n') {
             self.warn(name, "has a line break, which vanishes", "the original joins lines without a space");
         }
@@ -102,7 +102,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let attribute = self.required(name, &list(&names))?;
-        let text = self.decoded(attribute)?;
+        let text = self.decode(attribute)?;
         if let Some((_, value)) = choices.iter().find(|(name, _)| *name == text) {
             return Some(*value);
         }
@@ -212,7 +212,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Returns the value as the original sees it: lines joined, references translated.
-    fn decoded(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
+    fn decode(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let joined: Cow<'d, str> = if attribute.value.contains('\n') {
             attribute.value.replace('\n', "").into()
         } else {
@@ -243,7 +243,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns the text of a number, which must not be broken over lines.
     fn one_line(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
-        let text = self.decoded(attribute)?;
+        let text = self.decode(attribute)?;
         if attribute.value.trim_ascii().contains('\n') {
             let help = format!("the original joins the lines and reads `{}`", quote(&text));
             self.error(attribute.name, "has a line break inside", help);

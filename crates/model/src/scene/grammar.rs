@@ -62,12 +62,12 @@ pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>)
     if word.len() > LONGEST {
         return None;
     }
-    let plain = plain(word);
+    let plain = to_plain(word);
     let habit = HABITS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
     candidates
         .filter(|candidate| candidate.len() <= LONGEST)
         .filter_map(|candidate| {
-            let other = self::plain(candidate);
+            let other = self::to_plain(candidate);
             // The beginning of a name is as good as one slip.
             let begins = plain.len() >= 3 && other.starts_with(&plain);
             let distance = match habit {
@@ -83,7 +83,7 @@ pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>)
 }
 
 /// Keeps letters, in lower case, and digits only.
-fn plain(word: &str) -> String {
+fn to_plain(word: &str) -> String {
     word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 

@@ -44,7 +44,7 @@ impl UnknownFeature {
 impl fmt::Display for UnknownFeature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let programs = format!("programs of {}", self.assignment.key().to_uppercase());
-        let verb = if self.is_refused() { "refuse" } else { "ignore" };
+        let verb = if self.is_refused() { "reject" } else { "ignore" };
         match self.part {
             UnknownPart::Integrator(integrator) => write!(formatter, "{programs} {verb} {}", integrator.name()),
             UnknownPart::Force(kind) => write!(formatter, "{programs} {verb} <{}>", kind.element()),
@@ -136,12 +136,12 @@ mod tests {
         let constant = "<constantforce fx=\"1\" fy=\"0\"/>";
         assert_eq!(
             unknown(Assignment::T1M3, "forward-backward-euler", constant),
-            ["programs of T1M3 refuse forward-backward-euler", "programs of T1M3 ignore <constantforce>"]
+            ["programs of T1M3 reject forward-backward-euler", "programs of T1M3 ignore <constantforce>"]
         );
         assert!(unknown(Assignment::T2M1, "forward-backward-euler", constant).is_empty());
         let hybrid = "<collision type=\"hybrid\" COR=\"1\" k=\"1\" thickness=\"0.1\" maxiters=\"2\"/>";
-        let refused = "programs of T2M1 refuse collisions of type hybrid";
-        assert_eq!(unknown(Assignment::T2M1, "explicit-euler", hybrid), [refused]);
+        let rejected = "programs of T2M1 reject collisions of type hybrid";
+        assert_eq!(unknown(Assignment::T2M1, "explicit-euler", hybrid), [rejected]);
         assert!(unknown(Assignment::T2M2, "explicit-euler", hybrid).is_empty());
         let ignored = "programs of T1M1 ignore collisions of type hybrid";
         assert_eq!(unknown(Assignment::T1M1, "explicit-euler", hybrid), [ignored]);
@@ -155,8 +155,8 @@ mod tests {
         let contest = "<collisiondetection type=\"contest\"/>";
         let of = |integrator, elements: &str| unknown(Assignment::T2M3, integrator, elements);
         assert!(of("explicit-euler", &penalty("0", contest)).is_empty());
-        let refused = "programs of T2M3 refuse symplectic-euler";
-        assert_eq!(of("symplectic-euler", &penalty("0", contest)), [refused]);
+        let rejected = "programs of T2M3 reject symplectic-euler";
+        assert_eq!(of("symplectic-euler", &penalty("0", contest)), [rejected]);
         let layer = "programs of T2M3 look for pairs without a layer; the thickness must be 0, not 0.05";
         assert_eq!(of("explicit-euler", &penalty("0.05", contest)), [layer]);
         let unused = "programs of T2M3 find no pairs without <collisiondetection>";

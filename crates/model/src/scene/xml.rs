@@ -66,11 +66,11 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
     if reading.is_rigid() {
         return None;
     }
-    let particles = reading.repeated("particle", particle);
+    let particles = reading.check_repeated("particle", particle);
     let of_particles = reading.count("particle", "particle", particles.len());
-    let edges = reading.repeated("edge", |fields| edge(fields, of_particles));
+    let edges = reading.check_repeated("edge", |fields| edge(fields, of_particles));
     let of_edges = reading.count("edge", "edge", edges.len());
-    let half_planes = reading.repeated("halfplane", |fields| {
+    let half_planes = reading.check_repeated("halfplane", |fields| {
         let (point, normal) = (fields.vector("px", "py"), fields.vector("nx", "ny"));
         Some(HalfPlane { point: point?, normal: normal? })
     });
@@ -100,7 +100,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 
     /// Elements of a kind that may be repeated.
-    fn repeated<T>(
+    fn check_repeated<T>(
         &mut self,
         name: &str,
         mut read: impl FnMut(&mut TagFields<'d, 't, '_>) -> Option<T>,
@@ -186,7 +186,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     fn forces(&mut self, particles: Count, edges: Count) -> Vec<Part<'d, 't, Force>> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
-            forces.extend(self.repeated(kind.element(), |fields| {
+            forces.extend(self.check_repeated(kind.element(), |fields| {
                 kind.read(&mut ForceFields { fields, particles, edges, first: None }).ok()
             }));
         }
@@ -220,7 +220,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         let background = self.optional("backgroundcolor", |fields| fields.color());
         let tag = self.optional("scenetag", |fields| fields.text("tag", "a text"));
         let mut colors = |name: &str, of: Count| {
-            values(self.repeated(name, |fields| {
+            values(self.check_repeated(name, |fields| {
                 let (index, color) = (fields.index("i", of), fields.color());
                 Some((index?, color?))
             }))
@@ -228,7 +228,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         let particle_colors = colors("particlecolor", particles);
         let edge_colors = colors("edgecolor", edges);
         let half_plane_colors = colors("halfplanecolor", half_planes);
-        let paths = values(self.repeated("particlepath", |fields| read_path(fields, particles)));
+        let paths = values(self.check_repeated("particlepath", |fields| read_path(fields, particles)));
         Some(Display {
             max_frequency: max_frequency?,
             viewport: viewport?,

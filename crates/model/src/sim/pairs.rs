@@ -32,13 +32,13 @@ pub(super) struct PassCursor {
 impl PassCursor {
     /// Returns the first pair with this particle as its first object.
     #[inline]
-    pub const fn at(first: usize) -> Self {
+    pub const fn from_first(first: usize) -> Self {
         Self { first, kind: PairKind::ALL[0], second: 0 }
     }
 
     /// Returns the pair after one.
     #[inline]
-    pub const fn behind(kind: PairKind, first: usize, second: usize) -> Self {
+    pub const fn after(kind: PairKind, first: usize, second: usize) -> Self {
         Self { first, kind, second: second + 1 }
     }
 }
@@ -101,13 +101,15 @@ impl Pairs {
 
     /// Returns the pairs with this particle as their first object.
     pub fn pairs_of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
-        PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::at(first))).flat_map(move |(kind, seconds)| {
-            let is_pair = move |&second: &usize| match kind {
-                PairKind::ParticleEdge => !is_end(self.edges[second], first),
-                PairKind::ParticleParticle | PairKind::ParticleHalfPlane => true,
-            };
-            seconds.filter(is_pair).map(move |second| pair(kind, first, second))
-        })
+        PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::from_first(first))).flat_map(
+            move |(kind, seconds)| {
+                let is_pair = move |&second: &usize| match kind {
+                    PairKind::ParticleEdge => !is_end(self.edges[second], first),
+                    PairKind::ParticleParticle | PairKind::ParticleHalfPlane => true,
+                };
+                seconds.filter(is_pair).map(move |second| pair(kind, first, second))
+            },
+        )
     }
 
     fn objects(&self) -> Objects {

@@ -217,11 +217,11 @@ impl ExactPolynomial {
     pub(crate) fn control(&self) -> Control {
         let values = match self.length {
             0 | 1 => self.coefficients,
-            2 => self.converted([1.0, 1.0]),
-            3 => self.converted([1.0, 0.5, 1.0]),
-            4 => self.converted([1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
-            5 => self.converted([1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
-            _ => self.converted([1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
+            2 => self.convert([1.0, 1.0]),
+            3 => self.convert([1.0, 0.5, 1.0]),
+            4 => self.convert([1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
+            5 => self.convert([1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
+            _ => self.convert([1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
         };
         let size: f64 = self.coefficients.iter().map(|value| value.abs()).sum();
         Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, index: 0 }
@@ -241,7 +241,7 @@ impl ExactPolynomial {
     /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times
     /// entry i.
     #[inline(always)]
-    fn converted<const LENGTH: usize>(&self, reciprocals: [f64; LENGTH]) -> [f64; MAX_COEFFICIENTS] {
+    fn convert<const LENGTH: usize>(&self, reciprocals: [f64; LENGTH]) -> [f64; MAX_COEFFICIENTS] {
         let mut values = [0.0; MAX_COEFFICIENTS];
         for i in 0..LENGTH {
             values[i] = self.coefficients[i] * reciprocals[i];

@@ -48,12 +48,12 @@ pub fn exp(x: f64) -> f64 {
         let power = f64::from_bits(power.wrapping_sub(1009 << 52));
         return fused(power, more, power) * f64::from_bits((1023 + 1009) << 52);
     }
-    small(f64::from_bits(power.wrapping_add(1022 << 52)), more) * f64::MIN_POSITIVE
+    scale_subnormal(f64::from_bits(power.wrapping_add(1022 << 52)), more) * f64::MIN_POSITIVE
 }
 
 /// Returns `power (1 + more)`, rounded as a subnormal number is, whose last bits a product with 2^-1022 would round
 /// once more.
-fn small(power: f64, more: f64) -> f64 {
+fn scale_subnormal(power: f64, more: f64) -> f64 {
     let change = power * more;
     let value = power + change;
     if value >= 1.0 {

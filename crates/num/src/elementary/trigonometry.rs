@@ -35,7 +35,7 @@ pub fn sin(angle: f64) -> f64 {
         word if word < SINE_IS_ANGLE => angle,
         word if word < TABLE_ENDS => sine(angle, 0.0),
         word if word < QUARTER_ENDS => cosine(QUARTER[0] - angle.abs(), QUARTER[1]).copysign(angle),
-        word => reduced(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 0)),
+        word => reduce(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 0)),
     }
 }
 
@@ -50,7 +50,7 @@ pub fn cos(angle: f64) -> f64 {
             let sum = rest + QUARTER[1];
             sine(sum, (rest - sum) + QUARTER[1])
         }
-        word => reduced(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 1)),
+        word => reduce(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 1)),
     }
 }
 
@@ -59,7 +59,7 @@ fn high_word(angle: f64) -> u32 {
     (angle.abs().to_bits() >> 32) as u32
 }
 
-fn reduced(angle: f64, word: u32) -> Option<ReducedAngle> {
+fn reduce(angle: f64, word: u32) -> Option<ReducedAngle> {
     match word {
         _ if !angle.is_finite() => None,
         word if word < NEAR_ENDS => Some(near(angle)),

@@ -90,10 +90,13 @@ impl PolynomialPlot<'_> {
 
     /// Returns the plot in words, for readers who do not see it.
     fn description(&self) -> String {
-        let mut words: Vec<String> =
-            self.curves.iter().map(|curve| format!("{} is positive {}", curve.name, within(curve.positive))).collect();
+        let mut words: Vec<String> = self
+            .curves
+            .iter()
+            .map(|curve| format!("{} is positive {}", curve.name, clip_to_step(curve.positive)))
+            .collect();
         if let Some(common) = self.common {
-            words.push(format!("all are positive {}", within(common)));
+            words.push(format!("all are positive {}", clip_to_step(common)));
         }
         if let Some(time) = self.impact {
             words.push(format!("the time of impact is {}", short(time)));
@@ -165,7 +168,7 @@ fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sh
 }
 
 /// Describes the parts of sets of time within the step.
-fn within(list: &[Interval]) -> String {
+fn clip_to_step(list: &[Interval]) -> String {
     let parts: Vec<String> = list
         .iter()
         .filter_map(|interval| {

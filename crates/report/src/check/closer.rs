@@ -6,7 +6,7 @@ use crate::describe::pair_key;
 /// be read again.
 pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
-    let (scene, trace, step) = (quoted(check.scene), quoted(check.trace), first.step);
+    let (scene, trace, step) = (quote(check.scene), quote(check.trace), first.step);
     let mut commands = Vec::new();
     if let (Some(pair), 1..) = (first.detail.pair().map(pair_key), step) {
         let pass = match first.detail.pass().map_or(0, |pass| pass.index) {
@@ -24,7 +24,7 @@ pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
 }
 
 /// Returns a word as a shell takes it.
-fn quoted(word: &str) -> String {
+fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
     match !word.is_empty() && word.chars().all(is_plain) {
         true => word.to_owned(),
@@ -34,14 +34,14 @@ fn quoted(word: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::quoted;
+    use super::quote;
 
     #[test]
     fn words_with_blanks_and_quotes_stay_one_word() {
-        assert_eq!(quoted("scenes/test00.xml"), "scenes/test00.xml");
-        assert_eq!(quoted("asset:Group/name"), "asset:Group/name");
-        assert_eq!(quoted("my scene.xml"), "'my scene.xml'");
-        assert_eq!(quoted("it's; rm"), "'it'\\''s; rm'");
-        assert_eq!(quoted(""), "''");
+        assert_eq!(quote("scenes/test00.xml"), "scenes/test00.xml");
+        assert_eq!(quote("asset:Group/name"), "asset:Group/name");
+        assert_eq!(quote("my scene.xml"), "'my scene.xml'");
+        assert_eq!(quote("it's; rm"), "'it'\\''s; rm'");
+        assert_eq!(quote(""), "''");
     }
 }

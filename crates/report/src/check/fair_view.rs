@@ -19,7 +19,7 @@ view! {
         wrong_steps: u64 = fair.findings.wrong_steps,
         /// The first finding; null when there is none.
         first_divergence: Option<FindingView> =
-            fair.findings.first_divergence.as_ref().map(|first| FindingView::by(Book::Fair, first)),
+            fair.findings.first_divergence.as_ref().map(|first| FindingView::from_finding(Book::Fair, first)),
         /// As at the top. Tolerances depend on the values, so they are null.
         findings: Vec<CountedView> =
             CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
@@ -51,7 +51,10 @@ pub(super) struct CountedView {
 impl CountedView {
     /// Returns the first findings of each kind by a book, each with the number of them all.
     pub(super) fn all(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
-        firsts.iter().map(|first| Self { count: count(first.kind()), first: FindingView::by(book, first) }).collect()
+        firsts
+            .iter()
+            .map(|first| Self { count: count(first.kind()), first: FindingView::from_finding(book, first) })
+            .collect()
     }
 }
 

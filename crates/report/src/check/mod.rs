@@ -185,7 +185,7 @@ view! {
         difference: Option<CauseView> = cause(check.outcome).as_ref().map(CauseView::from),
         /// The official book's first finding; null when there is none.
         first_divergence: Option<FindingView> =
-            check.account().first_divergence.as_ref().map(|first| FindingView::by(check.book(), first)),
+            check.account().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
         /// The first finding of each kind by the official book, and the number of each kind.
         findings: Vec<CountedView> =
             CountedView::all(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),

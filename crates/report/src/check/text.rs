@@ -113,7 +113,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     let parity = match outcome.parity.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no step; there is nothing to get wrong".to_owned(),
         Overall::Passed => format!("{} by the original's rules", share::right(outcome.steps, count)),
-        Overall::Failed if outcome.damaged_steps > 0 => damaged(outcome),
+        Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
             format!("no single step of {steps} is wrong, but a residual is above its tolerance")
         }
@@ -142,7 +142,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
 }
 
 /// Describes where a trace that is read to its end is damaged, and what its steps before are.
-fn damaged(outcome: &Outcome) -> String {
+fn describe_damage(outcome: &Outcome) -> String {
     let place = match &outcome.damage {
         Some(damage) if damage.step > 0 => format!("the trace is damaged in step {} of {}", damage.step, outcome.steps),
         _ => "the trace is damaged".to_owned(),
@@ -221,21 +221,27 @@ fn residuals(outcome: &Outcome, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
     table.heading(["residual", "value", "tolerance", "used", ""]);
     for (name, (value, bound)) in names.into_iter().zip(outcome.parity.residuals.with_bounds()) {
-        let verdict = if judged { passed(value < bound) } else { "".into() };
-        table.row([name.into(), general(value).into(), general(bound).into(), used(value, bound).into(), verdict]);
+        let verdict = if judged { pass_cell(value < bound) } else { "".into() };
+        table.row([
+            name.into(),
+            general(value).into(),
+            general(bound).into(),
+            share_cell(value, bound).into(),
+            verdict,
+        ]);
     }
-    let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), passed);
+    let collisions = outcome.parity.collisions_passed.map_or_else(|| "".into(), pass_cell);
     let wrong = count(outcome.parity.findings.counts.collisions());
     table.row(["collisions, polynomials".into(), wrong.into(), "0".into(), "".into(), collisions]);
     format!("{}\n{}", style.paint(Look::Strong, "Rules of the original (parity)"), table.render(style))
 }
 
-fn passed(yes: bool) -> Cell {
-    if yes { Cell::looking(Look::Good, "passed") } else { Cell::looking(Look::Bad, "failed") }
+fn pass_cell(yes: bool) -> Cell {
+    if yes { Cell::with_look(Look::Good, "passed") } else { Cell::with_look(Look::Bad, "failed") }
 }
 
 /// Returns which share of its tolerance a residual uses.
-fn used(value: f64, bound: f64) -> String {
+fn share_cell(value: f64, bound: f64) -> String {
     let share = value / bound;
     if share.is_nan() {
         "-".to_owned()

@@ -54,8 +54,8 @@ pub(crate) fn render(grade: &Grade) -> String {
         for (s, scene) in group.scenes.iter().enumerate() {
             tests.push(Test {
                 // Without a score of its own the whole would be the sum of these.
-                score: grade.points.and(scene.points).map(rounded),
-                max_score: rounded(scene.max_points),
+                score: grade.points.and(scene.points).map(round_points),
+                max_score: round_points(scene.max_points),
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
                 name: format!("{} ({})", plain(&scene.scene), plain(&group.name)),
                 number: format!("{}.{}", g + 1, s + 1),
@@ -79,8 +79,8 @@ pub(crate) fn render(grade: &Grade) -> String {
                 false => speed_words(&SpeedGrade { source: SpeedSource::Withheld, ..speed.clone() }),
             };
             tests.push(Test {
-                score: grade.points.and(speed.points).map(rounded),
-                max_score: rounded(speed.marking.points),
+                score: grade.points.and(speed.points).map(round_points),
+                max_score: round_points(speed.marking.points),
                 status: if speed.points == Some(speed.marking.points) { "passed" } else { "failed" },
                 name: format!("speed ({})", plain(&group.name)),
                 number: format!("{}.{}", g + 1, group.scenes.len() + 1),
@@ -91,7 +91,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         }
     }
     let results = Results {
-        score: grade.points.map(rounded),
+        score: grade.points.map(round_points),
         execution_time: tells_all.then_some(grade.wall.as_secs()),
         output: overall(grade),
         output_format: "text",
@@ -166,6 +166,6 @@ fn output(scene: &SceneGrade) -> String {
 }
 
 /// Returns the points with six decimals at most, so that shares of a group add up to the shown sum.
-fn rounded(value: f64) -> f64 {
+fn round_points(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

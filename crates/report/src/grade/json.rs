@@ -198,15 +198,15 @@ view! {
         text: String = plain(&speed_words(speed)),
         /// The submission's processor time, divided by the reference's: of the least times.
         #[schemars(range(min = 0.0))]
-        ratio: Option<f64> = measured(speed).map(|measured| measured.ratio),
+        ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.ratio),
         /// The least ratio of a round of runs.
         #[schemars(range(min = 0.0))]
-        least_ratio: Option<f64> = measured(speed).map(|measured| measured.least),
+        least_ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.least),
         /// The greatest ratio of a round of runs.
         #[schemars(range(min = 0.0))]
-        greatest_ratio: Option<f64> = measured(speed).map(|measured| measured.most),
+        greatest_ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.most),
         /// Rounds of runs.
-        runs: u32 = measured(speed).map_or(0, |measured| measured.runs),
+        runs: u32 = measure_ratio(speed).map_or(0, |measured| measured.runs),
     }
 }
 
@@ -281,7 +281,7 @@ pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 }
 
 /// Returns the measurement of a submission that was timed.
-fn measured(speed: &SpeedGrade) -> Option<SpeedRatio> {
+fn measure_ratio(speed: &SpeedGrade) -> Option<SpeedRatio> {
     match speed.source {
         SpeedSource::Measured(measured) => Some(measured),
         _ => None,

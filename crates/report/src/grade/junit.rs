@@ -9,7 +9,7 @@ use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
-        if let Some(unfit) = words::unfit(grade) {
+        if let Some(unfit) = words::describe_unfit(grade) {
             report.add_test_suite(submission(grade, &unfit));
         }
         for group in &grade.groups {

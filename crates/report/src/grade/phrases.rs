@@ -11,7 +11,7 @@ pub(super) const NOT_GRADED: &str = "not graded";
 /// and its likely mistakes.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
-    if let Some(unfit) = words::unfit(grade) {
+    if let Some(unfit) = words::describe_unfit(grade) {
         return vec![unfit];
     }
     let wrong = wrong_scenes(grade);

@@ -41,14 +41,14 @@ impl Card {
 
     /// Returns a card with words only.
     #[must_use]
-    pub fn saying(words: &str) -> Self {
+    pub fn from_words(words: &str) -> Self {
         Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
     }
 
     /// Returns the card with a remark above it.
     #[must_use]
     pub fn noting(self, words: &str) -> Self {
-        Self { html: Self::saying(words).html + &self.html, ..self }
+        Self { html: Self::from_words(words).html + &self.html, ..self }
     }
 
     /// Returns the card as it is kept.

@@ -96,7 +96,7 @@ fn inspected_step(up: &InspectedStep, evidence: &Evidence) -> Value {
         "end": up.expected_end.as_ref().map(state),
         "passes": up.passes.iter().map(pass).collect::<Vec<_>>(),
         "expected": up.expected_contacts.iter().map(contact).collect::<Vec<_>>(),
-        "actual": up.actual_contacts.iter().filter_map(logged).take(200).collect::<Vec<_>>(),
+        "actual": up.actual_contacts.iter().filter_map(encode_logged).take(200).collect::<Vec<_>>(),
         "zones": up.zones.iter().map(|zones| json!({
             "round": zones.round,
             "zones": zones.zones.iter()
@@ -134,7 +134,7 @@ fn contact(impulse: &Impulse) -> Value {
     json!([pair_key(impulse.pair), impulse.time, impulse.normal.x, impulse.normal.y])
 }
 
-fn logged(impulse: &LoggedImpulse) -> Option<Value> {
+fn encode_logged(impulse: &LoggedImpulse) -> Option<Value> {
     let pair = format!("{}:{},{}", impulse.kind()?.short(), impulse.first, impulse.second);
     Some(json!([pair, impulse.time, impulse.normal.x, impulse.normal.y]))
 }

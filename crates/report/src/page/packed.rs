@@ -18,7 +18,7 @@ const TRIED: usize = 12 * EXACT;
 const KEPT: usize = 16_000;
 
 /// The unit of rounded positions, as a part of the bodies' extent.
-const PARTS: f64 = 65536.0;
+const UNITS: f64 = 65536.0;
 
 /// The mark of a value that has no number of units, or is no number.
 const BEYOND: i64 = 1 << 40;
@@ -84,7 +84,7 @@ fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
         }
     }
     let extent = if high > low { high - low } else { 1.0 };
-    (extent / PARTS).log2().floor().exp2()
+    (extent / UNITS).log2().floor().exp2()
 }
 
 /// Returns the records around steps with details, the first wrong steps before others.

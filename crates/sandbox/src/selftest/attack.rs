@@ -105,7 +105,7 @@ impl Attack {
             let (key, value) = line.split_once(": ").ok_or_else(|| format!("no key in: {line}"))?;
             match key {
                 "promise" => attack.promise = value.into(),
-                "expect" => attack.expected = value.split(" or ").map(expected).collect(),
+                "expect" => attack.expected = value.split(" or ").map(parse_expected).collect(),
                 "policy" if value == "tools" => attack.policy = Policy::Tools,
                 "wall" => {
                     let milliseconds = value.parse().map_err(|_| format!("no number: {value}"))?;
@@ -126,7 +126,7 @@ impl Attack {
     }
 }
 
-fn expected(text: &str) -> ExpectedEnd {
+fn parse_expected(text: &str) -> ExpectedEnd {
     match text.split_once(' ') {
         Some((kind, detail)) => ExpectedEnd { kind: kind.into(), detail: Some(detail.into()) },
         None => ExpectedEnd { kind: text.into(), detail: None },

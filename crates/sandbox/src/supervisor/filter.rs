@@ -185,7 +185,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     // Shared memory outside of files, and huge pages, are resident for no process: no counter would show them.
     let unseen = (libc::MAP_ANONYMOUS | libc::MAP_SHARED) as u64;
     let huge = libc::MAP_HUGETLB as u64;
-    refuse(libc::EPERM, libc::SYS_mmap, vec![masked(3, unseen, unseen)?, masked(3, huge, huge)?]);
+    refuse(libc::EPERM, libc::SYS_mmap, vec![mask_rule(3, unseen, unseen)?, mask_rule(3, huge, huge)?]);
     let flag = libc::O_ASYNC as u64;
     let asynchronous =
         vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, condition(2, SeccompCmpOp::MaskedEq(flag), flag)?];
@@ -193,9 +193,9 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     refuse(libc::EPERM, libc::SYS_fcntl, vec![all_differ(1, &commands)?, rule(asynchronous)?]);
     // Opening a file for reading only can empty it, and older Landlocks do not notice.
     let (mask, emptied) = ((libc::O_ACCMODE | libc::O_TRUNC) as u64, libc::O_TRUNC as u64);
-    refuse(libc::EPERM, libc::SYS_openat, vec![masked(2, mask, emptied)?]);
+    refuse(libc::EPERM, libc::SYS_openat, vec![mask_rule(2, mask, emptied)?]);
     #[cfg(target_arch = "x86_64")]
-    refuse(libc::EPERM, libc::SYS_open, vec![masked(1, mask, emptied)?]);
+    refuse(libc::EPERM, libc::SYS_open, vec![mask_rule(1, mask, emptied)?]);
     // Without descriptors in common, open files could be hidden from the supervisor.
     refuse(libc::EINVAL, libc::SYS_close_range, vec![all_differ(2, &[0, u64::from(libc::CLOSE_RANGE_CLOEXEC)])?]);
     for (errno, call, rules) in on_others(purpose)? {
@@ -233,10 +233,10 @@ type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN);
-    let mut clone = NAMESPACE_FLAGS.map(|flag| masked(0, flag, flag)).into_iter().collect::<io::Result<Vec<_>>>()?;
+    let mut clone = NAMESPACE_FLAGS.map(|flag| mask_rule(0, flag, flag)).into_iter().collect::<io::Result<Vec<_>>>()?;
     if !purpose.tools {
         rules.extend(always(calls::FORKING));
-        clone.push(masked(0, libc::CLONE_THREAD as u64, 0)?);
+        clone.push(mask_rule(0, libc::CLONE_THREAD as u64, 0)?);
         // The supervisor lets the first execution through, which starts the program itself. Without a listener, only
         // the execution by that descriptor passes the filter.
         rules.insert(libc::SYS_execve, Vec::new());
@@ -244,7 +244,7 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
         rules.insert(libc::SYS_execveat, entrance.into_iter().collect::<io::Result<_>>()?);
     }
     let parted = (libc::CLONE_THREAD | libc::CLONE_FILES) as u64;
-    clone.push(masked(0, parted, libc::CLONE_THREAD as u64)?);
+    clone.push(mask_rule(0, parted, libc::CLONE_THREAD as u64)?);
     rules.insert(libc::SYS_clone, clone);
     if purpose.announce {
         // The supervisor answers itself: the machine's memory, without the use by others; and that a thread may have
@@ -297,7 +297,7 @@ fn given(argument: u8) -> io::Result<SeccompRule> {
 }
 
 /// Matches when the bits of the mask have this value.
-fn masked(argument: u8, mask: u64, value: u64) -> io::Result<SeccompRule> {
+fn mask_rule(argument: u8, mask: u64, value: u64) -> io::Result<SeccompRule> {
     rule(vec![condition(argument, SeccompCmpOp::MaskedEq(mask), value)?])
 }
 

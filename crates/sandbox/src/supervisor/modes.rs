@@ -38,10 +38,10 @@ pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Pat
         libc::SYS_fchmod => (held(thread, first, folder, root)?, second),
         libc::SYS_fchmodat => {
             let start = if first as i32 == libc::AT_FDCWD { Start::Current } else { Start::Held(first) };
-            (named(thread, &start, second, folder, root)?, third)
+            (change_named(thread, &start, second, folder, root)?, third)
         }
         // The remaining one is `chmod`.
-        _ => (named(thread, &Start::Current, first, folder, root)?, second),
+        _ => (change_named(thread, &Start::Current, first, folder, root)?, second),
     };
     // The name that the open file has now decides; it is the very file that is changed.
     let entry = format!("/proc/self/fd/{}", file.as_raw_fd());
@@ -66,7 +66,7 @@ fn held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result
 }
 
 /// Returns the file of that name, without following links.
-fn named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
+fn change_named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let path = text_at(thread, address).ok_or(libc::EFAULT)?;
     let from = match start {
         Start::Current => format!("/proc/{thread}/cwd"),

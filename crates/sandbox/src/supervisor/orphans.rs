@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::{
-    processes::{find_of_session, find_of_user, stop_then_kill},
+    processes::{find_by_user, find_of_session, stop_then_kill},
     slot,
 };
 
@@ -17,7 +17,7 @@ pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
     for _ in 0..ROUNDS {
         let victims = stop_then_kill(|| {
             let mut victims = session.map(find_of_session).unwrap_or_default();
-            victims.extend(user.into_iter().flat_map(find_of_user));
+            victims.extend(user.into_iter().flat_map(find_by_user));
             victims
         });
         if victims.is_empty() {

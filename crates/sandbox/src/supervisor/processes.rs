@@ -58,7 +58,7 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     let swap = machine::has_swap();
     let mut add = |stat: &Stat| {
         usage.cpu += Duration::from_millis(10 * stat.ticks);
-        usage.memory += stat.resident() * page + if swap { swapped(stat.pid) } else { 0 };
+        usage.memory += stat.resident() * page + if swap { read_swapped(stat.pid) } else { 0 };
         usage.threads += stat.threads;
     };
     if tree {
@@ -70,7 +70,7 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
 }
 
 /// Bytes of a process that were moved to a disk. Where the main thread has left, another one knows.
-fn swapped(pid: i32) -> u64 {
+fn read_swapped(pid: i32) -> u64 {
     let of = |thread: i32| {
         machine::bytes_of(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
     };
@@ -99,7 +99,7 @@ pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
 }
 
 /// Returns the processes of a user, by the ids that `/proc` entries belong to.
-pub(super) fn find_of_user(user: u32) -> Vec<i32> {
+pub(super) fn find_by_user(user: u32) -> Vec<i32> {
     use std::os::unix::fs::MetadataExt;
     let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
     all().filter(owned).collect()
@@ -107,7 +107,7 @@ pub(super) fn find_of_user(user: u32) -> Vec<i32> {
 
 /// Returns the threads of a user, as the kernel counts them for its limit.
 pub(super) fn threads_of_user(user: u32) -> u64 {
-    find_of_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
+    find_by_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
 }
 
 /// The processes that did not end.
@@ -137,11 +137,11 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         }
         let victims = stop_then_kill(|| {
             let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
-            victims.extend(user.into_iter().flat_map(find_of_user));
+            victims.extend(user.into_iter().flat_map(find_by_user));
             victims
         });
         // No child is left, and no zombie either.
-        if reap_all(&mut reaped) && user.is_none_or(|user| find_of_user(user).is_empty()) {
+        if reap_all(&mut reaped) && user.is_none_or(|user| find_by_user(user).is_empty()) {
             return LeftProcesses::default();
         }
         if start.elapsed() > PATIENCE {

@@ -55,7 +55,7 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
         for user in users.clone() {
             let path = folder.join(user.to_string());
             let lock = OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(path)?;
-            if lock.try_lock().is_ok() && processes::find_of_user(user).is_empty() {
+            if lock.try_lock().is_ok() && processes::find_by_user(user).is_empty() {
                 return Ok(Slot { user, _lock: lock });
             }
         }

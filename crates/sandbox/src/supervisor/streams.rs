@@ -8,7 +8,7 @@ use std::{
 use crate::sys;
 
 /// The most bytes that are read in one call: a flood must not keep the supervisor from its other tasks.
-const AT_ONE_GO: usize = 1 << 20;
+const BYTES_PER_COPY: usize = 1 << 20;
 
 /// One captured stream.
 pub(super) struct CapturedStream {
@@ -37,13 +37,13 @@ impl CapturedStream {
         // Memory that is touched for the first time costs more than another call, and most programs print little.
         let (mut small, mut large) = ([0; 1 << 12], Vec::new());
         let buffer = if self.truncated {
-            large.resize(AT_ONE_GO / 16, 0);
+            large.resize(BYTES_PER_COPY / 16, 0);
             &mut large[..]
         } else {
             &mut small[..]
         };
         let mut taken = 0;
-        while taken < AT_ONE_GO {
+        while taken < BYTES_PER_COPY {
             match pipe.read(buffer) {
                 Ok(0) => {
                     self.pipe = None;

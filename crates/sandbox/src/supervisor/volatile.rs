@@ -19,7 +19,7 @@ use crate::wire::{self, RawBytes, RunOrder};
 const SPARE_BYTES: u64 = 1 << 20;
 const SPARE_FILES: u64 = 64;
 /// Bytes that are copied at one go.
-const AT_ONE_GO: usize = 1 << 16;
+const BYTES_PER_COPY: usize = 1 << 16;
 
 /// Returns the options of the file system for this order's folder.
 pub(super) fn options(order: &RunOrder) -> String {
@@ -65,7 +65,7 @@ pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()
 ///
 /// `OutOfMemory` when they take more than `most` bytes.
 pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<()> {
-    let mut buffer = vec![0; AT_ONE_GO];
+    let mut buffer = vec![0; BYTES_PER_COPY];
     let (mut at, mut copied) = (0, 0);
     loop {
         // A file system that knows no holes has none.
@@ -134,7 +134,7 @@ mod tests {
         let from = File::open(folder.path().join("from")).unwrap();
         let mut to = File::create_new(folder.path().join("to")).unwrap();
         assert_eq!(copy_blocks(&from, &mut to, 4095).unwrap_err().kind(), io::ErrorKind::OutOfMemory);
-        copy_blocks(&from, &mut to, AT_ONE_GO as u64).unwrap();
+        copy_blocks(&from, &mut to, BYTES_PER_COPY as u64).unwrap();
         let metadata = folder.path().join("to").metadata().unwrap();
         assert!(metadata.len() == 1 << 40 && metadata.blocks() < 1000, "{metadata:?}");
     }

@@ -154,12 +154,12 @@ fn at_place(path: &Path) -> io::Result<File> {
 /// Prepares the rules for an order whose working folder is open as `folder`.
 pub(super) fn rules(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let version = version(order.walls.landlock_version);
-    let mut ruleset = handled(order.walls.scopes, version)?;
+    let mut ruleset = begin_ruleset(order.walls.scopes, version)?;
     for (opened, access) in &places.0 {
-        ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), *access)).map_err(refused)?;
+        ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), *access)).map_err(from_ruleset_error)?;
     }
     let inside = in_folder(order.tools) & AccessFs::from_all(version);
-    ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(refused)
+    ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(from_ruleset_error)
 }
 
 /// Adds the files of its own entry in `/proc` that the process may read, one by one, because the entry also shows
@@ -169,7 +169,7 @@ pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCr
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
     for (name, access) in files.into_iter().chain(OWN_FOLDERS.map(|name| (name, AccessFs::ReadDir))) {
         if let Ok(opened) = sys::open_beneath(own.as_fd(), name, OFlags::PATH) {
-            ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(refused)?;
+            ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), access)).map_err(from_ruleset_error)?;
         }
     }
     Ok(ruleset)
@@ -181,7 +181,7 @@ pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCr
 ///
 /// Also when the kernel accepted them without enforcing any.
 pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
-    let status = ruleset.restrict_self().map_err(refused)?;
+    let status = ruleset.restrict_self().map_err(from_ruleset_error)?;
     if status.ruleset == RulesetStatus::NotEnforced {
         return Err(io::Error::from_raw_os_error(libc::EOPNOTSUPP));
     }
@@ -190,7 +190,7 @@ pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
 
 /// Returns a ruleset that allows nothing, for the probe.
 pub(super) fn nothing(scopes: bool) -> io::Result<RulesetCreated> {
-    handled(scopes, NEWEST)
+    begin_ruleset(scopes, NEWEST)
 }
 
 /// Returns the rules of an older kernel, to test them; 0 means the newest.
@@ -199,19 +199,19 @@ fn version(number: u8) -> ABI {
 }
 
 /// Denies everything that the running kernel can deny unless a rule allows it.
-fn handled(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
+fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     let mut ruleset = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
         .handle_access(AccessFs::from_all(version))
-        .map_err(refused)?;
+        .map_err(from_ruleset_error)?;
     let network = AccessNet::from_all(version);
     if !network.is_empty() {
-        ruleset = ruleset.handle_access(network).map_err(refused)?;
+        ruleset = ruleset.handle_access(network).map_err(from_ruleset_error)?;
     }
     if scopes {
-        ruleset = ruleset.scope(Scope::from_all(NEWEST)).map_err(refused)?;
+        ruleset = ruleset.scope(Scope::from_all(NEWEST)).map_err(from_ruleset_error)?;
     }
-    ruleset.create().map_err(refused)
+    ruleset.create().map_err(from_ruleset_error)
 }
 
 /// Returns the rights in the program's folder: it may make, change and remove files and folders. Only build tools may
@@ -228,7 +228,7 @@ fn in_folder(tools: bool) -> BitFlags<AccessFs> {
     if tools { submission | AccessFs::Execute | AccessFs::MakeSym | AccessFs::Refer } else { submission }
 }
 
-fn refused(error: RulesetError) -> io::Error {
+fn from_ruleset_error(error: RulesetError) -> io::Error {
     let errno = io::Error::last_os_error();
     if errno.raw_os_error().is_some_and(|number| number != 0) { errno } else { io::Error::other(error) }
 }

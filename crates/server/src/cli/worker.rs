@@ -82,7 +82,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
 
 /// Makes a worker's name unique: the process adds what distinguishes two workers of one name.
 fn unique_name(name: Option<&str>) -> String {
-    let name = plain(name.map_or_else(host, str::to_owned).as_str());
+    let name = strip_controls(name.map_or_else(host, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
 }
 
@@ -153,7 +153,7 @@ fn host() -> String {
 }
 
 /// Returns a name as a file name.
-fn plain(name: &str) -> String {
+fn strip_controls(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let plain: String = name.chars().map(safe).take(60).collect();
     if plain.is_empty() { "worker".to_owned() } else { plain }

@@ -188,9 +188,9 @@ impl Database {
         match &self.engine {
             // A transaction that begins as a reader could not become the writer when another has written meanwhile.
             Engine::Sqlite { writer, .. } => {
-                self.waited(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
+                self.limit_wait(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
-            Engine::Postgres(pool) => self.waited(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
+            Engine::Postgres(pool) => self.limit_wait(Inner::Postgres, || pool.begin_with(BEGIN), true).await,
         }
     }
 
@@ -225,16 +225,16 @@ impl Database {
     /// When the database can't be reached.
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
-            Engine::Sqlite { readers, .. } => self.waited(Inner::Sqlite, || readers.begin(), false).await,
+            Engine::Sqlite { readers, .. } => self.limit_wait(Inner::Sqlite, || readers.begin(), false).await,
             Engine::Postgres(pool) => {
                 let begin = "BEGIN ISOLATION LEVEL REPEATABLE READ, READ ONLY";
-                self.waited(Inner::Postgres, || pool.begin_with(begin), true).await
+                self.limit_wait(Inner::Postgres, || pool.begin_with(begin), true).await
             }
         }
     }
 
     /// Waits for a turn, where they are counted, and for a transaction to begin.
-    async fn waited<T, F: Future<Output = Result<T, sqlx::Error>>>(
+    async fn limit_wait<T, F: Future<Output = Result<T, sqlx::Error>>>(
         &self,
         make: fn(T) -> Inner,
         begin: impl FnOnce() -> F,

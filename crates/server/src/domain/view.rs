@@ -443,7 +443,7 @@ pub(super) async fn history(
             old_points,
             new_code,
             new_points: given.clone().or(new_points),
-            by_what: by_what(&row.text("task")?, is_staff),
+            by_what: describe_task(&row.text("task")?, is_staff),
             task: if is_staff { row.text("task")? } else { String::new() },
         }))
     };
@@ -451,7 +451,7 @@ pub(super) async fn history(
 }
 
 /// Describes a task in short: by its suite, hints and rules.
-fn by_what(task: &str, is_staff: bool) -> String {
+fn describe_task(task: &str, is_staff: bool) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
     let suite = match task.suite {
         Suite::Archive(_) if !is_staff => "of the course".to_owned(),

@@ -55,14 +55,14 @@ pub enum ServiceFault {
 }
 
 impl ServiceFault {
-    fn away(why: impl fmt::Display) -> Self {
+    fn from_outage(why: impl fmt::Display) -> Self {
         Self::Away { why: why.to_string(), after: None }
     }
 }
 
 impl From<DbError> for ServiceFault {
     fn from(error: DbError) -> Self {
-        Self::away(error)
+        Self::from_outage(error)
     }
 }
 
@@ -153,7 +153,7 @@ impl Client {
         let (agent, ask) = (self.agent.clone(), ask.clone());
         let authorization = token.map(|token| format!("Bearer {token}"));
         let asked = tokio::task::spawn_blocking(move || blocking(&agent, &url, &ask, authorization.as_deref())).await;
-        asked.map_err(ServiceFault::away)?
+        asked.map_err(ServiceFault::from_outage)?
     }
 
     /// Calls a service, with a token for this scope; once more with a new one when the platform no longer knows it.
@@ -226,18 +226,18 @@ fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) ->
         request = request.header("Authorization", authorization);
     }
     let answer = match &ask.body {
-        None => agent.run(request.body(()).map_err(ServiceFault::away)?),
+        None => agent.run(request.body(()).map_err(ServiceFault::from_outage)?),
         Some((kind, body)) => {
             let request = request.method("POST").header("Content-Type", *kind).body(body);
-            agent.run(request.map_err(ServiceFault::away)?)
+            agent.run(request.map_err(ServiceFault::from_outage)?)
         }
     };
-    let mut answer = answer.map_err(ServiceFault::away)?;
+    let mut answer = answer.map_err(ServiceFault::from_outage)?;
     let header = |name: &str| answer.headers().get(name).and_then(|value| value.to_str().ok()).map(str::to_owned);
     let link = header("link");
     // In seconds; as a date it is passed over, and the queue's own patience holds.
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
-    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::away)?;
+    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::from_outage)?;
     Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(LONGEST_WAIT)) })
 }

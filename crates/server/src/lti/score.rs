@@ -66,7 +66,7 @@ pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, aga
 }
 
 /// Sends the score of an account to the link by which it just arrived.
-pub(crate) async fn arrived(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
+pub(crate) async fn note_arrival(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
     let statement = orders!("submission.account = ? AND platform_link.id = ?");
     let rows = transaction.rows(statement, values![account, link]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
@@ -241,22 +241,22 @@ pub(super) enum ColumnState {
     /// The column is known.
     Known(String),
     /// The caller must have it made; others wait this long.
-    Yours,
+    Unclaimed,
     /// Somebody else is at it.
-    Theirs,
+    Claimed,
 }
 
-/// Returns the state of the column of a link; a caller that gets [`Column::Yours`] calls [`column_made`] soon.
+/// Returns the state of the column of a link; a caller that gets [`ColumnState::Unclaimed`] calls [`column_made`] soon.
 pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL
            AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)";
     let mine = transaction.execute(statement, values![at_most, link, at_most]).await?;
     if mine > 0 {
-        return Ok(ColumnState::Yours);
+        return Ok(ColumnState::Unclaimed);
     }
     let row = transaction.one("SELECT line_item FROM platform_link WHERE id = ?", values![link]).await?;
-    Ok(row.maybe_text("line_item")?.map_or(ColumnState::Theirs, ColumnState::Known))
+    Ok(row.maybe_text("line_item")?.map_or(ColumnState::Claimed, ColumnState::Known))
 }
 
 /// Stores the column that was found or made for a link; `None` lets another caller try.

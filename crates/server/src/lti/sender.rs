@@ -198,8 +198,8 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
         transaction.commit().await?;
         match column {
             ColumnState::Known(address) => return Ok(address),
-            ColumnState::Theirs => tokio::time::sleep(LOOK_AGAIN).await,
-            ColumnState::Yours => {
+            ColumnState::Claimed => tokio::time::sleep(LOOK_AGAIN).await,
+            ColumnState::Unclaimed => {
                 let made = find_or_make(database, lti, parcel, container).await;
                 let mut transaction = database.begin().await?;
                 score::keep_column(&mut transaction, link, made.as_deref().ok()).await?;

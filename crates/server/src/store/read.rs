@@ -34,7 +34,7 @@ impl Store {
         };
         let size = found.meta.size;
         let pieces = found.into_stream().map_err(StoreError::from).boxed();
-        let mut pieces = verified(pieces, digest.clone());
+        let mut pieces = verify(pieces, digest.clone());
         let first = pieces.next().await.transpose()?;
         let pieces = futures_util::stream::iter(first.map(Ok)).chain(pieces).boxed();
         Ok(OpenArtifact { size, pieces })
@@ -62,7 +62,7 @@ impl Store {
 }
 
 /// Returns the pieces, of which the last one comes only if all together have this digest.
-fn verified(
+fn verify(
     pieces: BoxStream<'static, Result<Bytes, StoreError>>,
     digest: Digest,
 ) -> BoxStream<'static, Result<Bytes, StoreError>> {

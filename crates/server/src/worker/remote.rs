@@ -90,7 +90,7 @@ impl RemoteSource {
 }
 
 /// Returns a lease as a header shows it.
-fn shown(lease: &Lease) -> String {
+fn format_lease(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
 
@@ -106,13 +106,13 @@ impl Parts {
     /// Sends JSON, and reads JSON.
     fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, SourceError> {
         let answer = self.post(path, body)?;
-        let mut answer = checked(answer)?;
+        let mut answer = check_status(answer)?;
         let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
     /// Returns a request with the worker's identity and the job.
-    fn signed<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
+    fn sign<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
         let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
         match lease {
             Some(lease) => request.header("Fosssim-Lease", lease),
@@ -122,13 +122,13 @@ impl Parts {
 
     fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, SourceError> {
         let body = serde_json::to_vec(body).map_err(|error| SourceError::Refused(error.to_string()))?;
-        let request = self.signed(self.agent.post(self.url(path)), None);
+        let request = self.sign(self.agent.post(self.url(path)), None);
         request.header("Content-Type", "application/json").send(&body).map_err(away)
     }
 }
 
 /// Returns the meaning of a status: a server that does not answer for a moment, or one that rejects for good.
-fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
+fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
         return Ok(answer);
@@ -147,7 +147,7 @@ fn checked(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
 impl JobSource for RemoteSource {
     async fn claim(&self) -> Result<Option<ClaimedJob>, SourceError> {
         self.call(move |parts| {
-            let mut answer = checked(parts.post("claim", &serde_json::json!({}))?)?;
+            let mut answer = check_status(parts.post("claim", &serde_json::json!({}))?)?;
             if answer.status() == 204 {
                 return Ok(None);
             }
@@ -180,11 +180,11 @@ impl JobSource for RemoteSource {
     }
 
     async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {
-        let (lease, wanted, place) = (shown(lease), digest.clone(), file.to_owned());
+        let (lease, wanted, place) = (format_lease(lease), digest.clone(), file.to_owned());
         self.call(move |parts| {
             let request = parts.agent.get(parts.url(&format!("files/{wanted}")));
-            let answer = parts.signed(request, Some(&lease)).call().map_err(away)?;
-            let mut answer = checked(answer)?;
+            let answer = parts.sign(request, Some(&lease)).call().map_err(away)?;
+            let mut answer = check_status(answer)?;
             let written = fs::File::create_new(&place).and_then(|mut output| {
                 let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
                 io::copy(&mut input, &mut output)
@@ -206,12 +206,12 @@ impl JobSource for RemoteSource {
 
     async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, SourceError> {
         let artifact = digest_of_file(file).await.map_err(|error| SourceError::Refused(error.to_string()))?;
-        let (lease, digest, place) = (shown(lease), artifact.digest.clone(), file.to_owned());
+        let (lease, digest, place) = (format_lease(lease), artifact.digest.clone(), file.to_owned());
         self.call(move |parts| {
             let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
-            let request = parts.signed(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
+            let request = parts.sign(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
             let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(away)?;
-            checked(answer).map(drop)
+            check_status(answer).map(drop)
         })
         .await?;
         Ok(artifact)

@@ -24,7 +24,7 @@ const FIRST_WAIT: Duration = Duration::from_millis(200);
 const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
 /// The number of tries to get the parts of a job while the source does not answer.
-const PATIENT_TRIES: u32 = 5;
+const MOST_FETCHES: u32 = 5;
 
 /// The time between two reports of a grading's progress.
 const TELL_EVERY: Duration = Duration::from_secs(1);
@@ -238,7 +238,7 @@ async fn attempt<D: JobSource, G: Grader>(
 /// Repeats a request to a source that does not answer: a short fault of the network costs no try.
 async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
-    for _ in 0..PATIENT_TRIES {
+    for _ in 0..MOST_FETCHES {
         match ask().await {
             Err(SourceError::Away(error)) => tracing::warn!(error, "the source can't be reached"),
             answer => return answer,

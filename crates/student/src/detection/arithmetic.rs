@@ -167,12 +167,12 @@ fn quintic<N: Number>(x12: &Vector<N>, x32: &Vector<N>, d12: &Vector<N>, d32: &V
 }
 
 /// Returns the vector from the first center to the second at time `t`.
-pub fn between_particles<N: Number>(one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
+pub fn vector_between_particles<N: Number>(one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
     rounded_vector::<N>(minus(at(two, t), at(one, t)))
 }
 
 /// Returns the vector from the particle to the closest point of the edge's line at time `t`.
-pub fn to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) -> Vec2 {
+pub fn vector_to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) -> Vec2 {
     let along: Vector<N> = minus(at(three, t), at(two, t));
     let beside = minus(at(one, t), at(two, t));
     let alpha = dot(beside, along) / dot(along, along);

@@ -27,7 +27,7 @@ fn sign(exponent: usize) -> f64 {
 
 /// Returns the coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times
 /// that divide the step evenly, by Newton's divided differences.
-fn interpolated(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
+fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
     let times: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();
     let mut differences: Vec<f64> = times.iter().map(|&t| value(t)).collect();
@@ -56,7 +56,7 @@ pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let n = |t| two.at(t) - one.at(t);
     let reach = one.radius + two.radius;
     let closing = one.displacement - two.displacement;
-    vec![interpolated(2, |t| reach * reach - n(t).dot(&n(t))), interpolated(1, |t| closing.dot(&n(t)))]
+    vec![interpolate(2, |t| reach * reach - n(t).dot(&n(t))), interpolate(1, |t| closing.dot(&n(t)))]
 }
 
 /// Returns the overlap and approach of a particle and a half-plane, from values.
@@ -64,7 +64,7 @@ pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<V
     let away = |t| (point - one.at(t)).dot(&normal);
     let reach = one.radius * one.radius * normal.dot(&normal);
     let speed = one.displacement.dot(&normal);
-    vec![interpolated(2, |t| reach - away(t) * away(t)), interpolated(1, |t| speed * away(t))]
+    vec![interpolate(2, |t| reach - away(t) * away(t)), interpolate(1, |t| speed * away(t))]
 }
 
 /// Returns the overlap of a particle and an edge at one time.
@@ -77,9 +77,9 @@ pub fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 
 /// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
 pub fn particle_edge(bodies @ [one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
     [
-        interpolated(4, |t| overlap(bodies, square, t)),
-        interpolated(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),
-        interpolated(2, |t| (one.at(t) - three.at(t)).dot(&(two.at(t) - three.at(t)))),
+        interpolate(4, |t| overlap(bodies, square, t)),
+        interpolate(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),
+        interpolate(2, |t| (one.at(t) - three.at(t)).dot(&(two.at(t) - three.at(t)))),
     ]
 }
 
@@ -98,7 +98,7 @@ mod tests {
     #[test]
     fn values_have_one_polynomial() {
         let value = |t: f64| (((2.0 * t - 1.0) * t + 3.0) * t - 5.0) * t + 0.25;
-        let found = interpolated(4, value);
+        let found = interpolate(4, value);
         let right = [2.0, -1.0, 3.0, -5.0, 0.25];
         assert!(found.iter().zip(right).all(|(found, right)| (found - right).abs() < 1e-13), "{found:?}");
     }

@@ -254,7 +254,7 @@ pub fn detect(
     if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
         return Ok(None);
     }
-    if rejected(student, &encounter, time) || (student.makes(Mistake::DecisionFixedEdges) && is_held(world, pair)) {
+    if is_rejected(student, &encounter, time) || (student.makes(Mistake::DecisionFixedEdges) && is_held(world, pair)) {
         return Ok(None);
     }
     match student.mistake_in(&[Area::ContactVector]) {
@@ -303,7 +303,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
 }
 
 /// Returns whether a further test rejects the impact; some programs make such tests, and should not.
-fn rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
+fn is_rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
     match (student.mistake_among(REJECTIONS), encounter) {
         (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
         (Some(Mistake::DecisionOverlapAtStart), _) => {

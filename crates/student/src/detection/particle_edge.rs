@@ -40,8 +40,8 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     let overlap = match mistake {
         Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<WideNumber>(bodies, edge_radius).swap_remove(0),
         Some(Mistake::FactorizedQuartic | Mistake::FactorizedAll) => factorized::quartic(bodies, square),
-        Some(Mistake::InterpolatedQuartic) => interpolated(bodies, square),
-        Some(Mistake::RearrangedParticleEdge) => rearranged(dots, square),
+        Some(Mistake::InterpolatedQuartic) => interpolate(bodies, square),
+        Some(Mistake::RearrangedParticleEdge) => rearrange(dots, square),
         _ => quartic(student, dots, square),
     };
     vec![
@@ -158,7 +158,7 @@ fn quartic(student: Student, [a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -
 }
 
 /// Returns the quartic with other parentheses.
-fn rearranged([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
+fn rearrange([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     vec![
         c * c - i * f,
         2.0 * (b * c - (e * i + h * f)),
@@ -169,7 +169,7 @@ fn rearranged([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
 }
 
 /// Returns the quartic from its values at five times.
-fn interpolated(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
+fn interpolate(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
     let value = |t: f64| basis::overlap(bodies, s, t);
     let (low2, low1, middle, high1, high2) = (value(-2.0), value(-1.0), value(0.0), value(1.0), value(2.0));
     let even1 = (high1 + low1) / 2.0 - middle;
@@ -252,8 +252,8 @@ pub fn contact_vector(student: Student, bodies: &[MovingBody; 3], t: f64) -> Vec
         Some(Mistake::ParticleEdgeContactEdgeStill) => {
             two.start + alpha * (three.start - two.start) - one.start - t * one.displacement
         }
-        Some(Mistake::ExtendedPrecision) => arithmetic::to_edge::<WideNumber>(bodies, t),
-        Some(Mistake::FusedArithmetic) => arithmetic::to_edge::<FusedDouble>(bodies, t),
+        Some(Mistake::ExtendedPrecision) => arithmetic::vector_to_edge::<WideNumber>(bodies, t),
+        Some(Mistake::FusedArithmetic) => arithmetic::vector_to_edge::<FusedDouble>(bodies, t),
         Some(Mistake::ContactOtherFormula) => {
             let across = Vec2::new(-along.y, along.x);
             (two.at(t) - one.at(t)).dot(&across) / along.dot(&along) * across

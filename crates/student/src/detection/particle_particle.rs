@@ -123,8 +123,8 @@ pub fn contact_vector(student: Student, one: &MovingBody, two: &MovingBody, t: f
         Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.at(t),
         Some(Mistake::ParticleParticleContactFirstAtEnd) => two.at(t) - one.end(),
         Some(Mistake::ParticleParticleContactSecondAtEnd) => two.end() - one.at(t),
-        Some(Mistake::ExtendedPrecision) => arithmetic::between_particles::<WideNumber>(one, two, t),
-        Some(Mistake::FusedArithmetic) => arithmetic::between_particles::<FusedDouble>(one, two, t),
+        Some(Mistake::ExtendedPrecision) => arithmetic::vector_between_particles::<WideNumber>(one, two, t),
+        Some(Mistake::FusedArithmetic) => arithmetic::vector_between_particles::<FusedDouble>(one, two, t),
         Some(Mistake::ContactOtherFormula) => (two.start - one.start) + t * (two.displacement - one.displacement),
         _ => two.at(t) - one.at(t),
     }

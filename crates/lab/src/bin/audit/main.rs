@@ -202,7 +202,7 @@ impl Random {
     }
 }
 
-fn turned(v: Vec2) -> Vec2 {
+fn turn(v: Vec2) -> Vec2 {
     Vec2::new(-v.y, v.x)
 }
 
@@ -224,7 +224,7 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
         return (pair, "zeros on a grid", vec![product(random)]);
     }
     let kinds: [(&str, Make); 8] = [
-        ("wide", wide),
+        ("wide", draw_wide),
         ("grid", grid),
         ("near-rigid", near_rigid),
         ("resting", resting),
@@ -275,7 +275,7 @@ fn product(random: &mut Random) -> Vec<BoundedValue> {
 }
 
 /// Makes a motion in which every object has its own scale and speed.
-fn wide(random: &mut Random) -> RandomMotion {
+fn draw_wide(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let mut object = |spread: f64| {
         let size = scale * if random.chance(3) { random.log(-3.0, 3.0) } else { spread };
@@ -298,7 +298,7 @@ fn grid(random: &mut Random) -> RandomMotion {
 
 /// Makes a motion in which the second and third object move almost alike.
 fn near_rigid(random: &mut Random) -> RandomMotion {
-    let mut motion = wide(random);
+    let mut motion = draw_wide(random);
     let relative = random.log(-17.0, -1.0);
     motion.d[2] = motion.d[1] + random.direction() * (relative * (length(motion.d[1]) + random.log(-9.0, 0.0)));
     motion
@@ -309,7 +309,7 @@ fn resting(random: &mut Random) -> RandomMotion {
     let mut motion = bulk(random);
     let along = motion.x[2] - motion.x[1];
     let length = length(along);
-    let normal = turned(along) * (1.0 / length);
+    let normal = turn(along) * (1.0 / length);
     let gap = motion.radius * (1.0 + random.uniform(-1.0, 3.0) * random.log(-17.0, -1.0));
     motion.x[0] = motion.x[1] + along * random.uniform(-0.2, 1.2) + normal * gap;
     let slide = along * (random.uniform(-1.0, 1.0) * random.log(-9.0, 0.0));
@@ -320,13 +320,13 @@ fn resting(random: &mut Random) -> RandomMotion {
 
 /// Returns the particle passes at about the sum of the radii at some time before, within or after the step.
 fn grazing(random: &mut Random) -> RandomMotion {
-    let mut motion = if random.chance(2) { wide(random) } else { turning(random) };
+    let mut motion = if random.chance(2) { draw_wide(random) } else { turning(random) };
     let time = random.uniform(-2.0, 4.0);
     let target = motion.x[1] + motion.d[1] * time;
     let other = motion.x[2] + motion.d[2] * time;
     let along = other - target;
     let length = length(along);
-    let normal = turned(along) * (1.0 / length);
+    let normal = turn(along) * (1.0 / length);
     let gap = motion.radius * (1.0 + random.uniform(-1.0, 1.0) * random.log(-16.0, 0.0));
     let meeting = target + along * random.uniform(-0.1, 1.1) + normal * gap;
     let speed = motion.radius * random.log(-6.0, 2.0);
@@ -338,7 +338,7 @@ fn grazing(random: &mut Random) -> RandomMotion {
 
 /// Returns a motion of bodies that are far apart compared with radii and motion.
 fn far(random: &mut Random) -> RandomMotion {
-    let mut motion = wide(random);
+    let mut motion = draw_wide(random);
     let distance = motion.radius * random.log(0.0, 7.0);
     motion.x[0] = motion.x[1] + random.direction() * distance;
     for i in 0..3 {
@@ -354,7 +354,7 @@ fn turning(random: &mut Random) -> RandomMotion {
     let (center, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
     let angle = random.uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
     let stretch = 1.0 + random.uniform(-0.5, 0.5) * random.log(-6.0, 0.0);
-    let turned = (half * angle.cos() + turned(half) * angle.sin()) * stretch;
+    let turned = (half * angle.cos() + turn(half) * angle.sin()) * stretch;
     let shift = random.direction() * (scale * random.log(-6.0, 0.5));
     let particle = random.direction() * (scale * random.log(-6.0, 0.5));
     RandomMotion {

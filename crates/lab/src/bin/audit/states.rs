@@ -53,7 +53,7 @@ pub fn run(corpus: Option<&Path>) -> ExitCode {
         faults.extend(refused);
     }
     println!(
-        "milestone  scenes  right programs  accepted  borderline  refused when times  largest share: position  velocity"
+        "milestone  scenes  right programs  accepted  borderline  rejected if times  largest share: position  velocity"
     );
     for (milestone, row) in &rows {
         println!(
@@ -67,7 +67,7 @@ pub fn run(corpus: Option<&Path>) -> ExitCode {
             100.0 * row.velocity
         );
     }
-    println!("milestone  traces with noise on three numbers, refused of these with {NOISES:?}");
+    println!("milestone  traces with noise on three numbers, rejected of these with {NOISES:?}");
     for (milestone, row) in &rows {
         println!("{milestone:9}  {:6}  {:?}", row.noisy, row.refused);
     }

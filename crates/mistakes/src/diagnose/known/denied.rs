@@ -9,7 +9,7 @@ use fosssim_student::{CATALOGUE, Mistake, Row};
 
 /// Returns the keys of mistakes by which something is never done that this trace does: a zone is moved, a pass is made,
 /// a polynomial of the kind is right.
-pub(super) fn denied(scene: &Scene, scan: &Scan) -> Vec<String> {
+pub(super) fn find_denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong.iter().chain(&scan.right);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
     let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });

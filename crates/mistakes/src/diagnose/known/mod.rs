@@ -89,7 +89,7 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
         let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
         return only(Explanation::for_other_scene(has_length));
     }
-    let denies = denied::denied(scene, &scan);
+    let denies = denied::find_denied(scene, &scan);
     let (mut explanations, is_settled) = explain_wrong_steps(reference, scene, &mut scan);
     explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
     if !explanations.is_empty() || scan.outline.padded == 0 {

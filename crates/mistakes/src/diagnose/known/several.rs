@@ -91,7 +91,7 @@ impl<'a> Search<'a> {
         if set.len() < 2 || best < self.goal() || !self.is_needed(&set) {
             return None;
         }
-        let samples = self.confirmed(&set)?;
+        let samples = self.count_confirmed(&set)?;
         let is_variant = |row: &&'static Row| row.kind == RowKind::Variant;
         if set.iter().chain(alike.last().into_iter().flatten()).any(is_variant) {
             return None;
@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
                 rows: rows.clone(),
                 same_as,
                 rivals: Vec::new(),
-                samples: self.confirmed(rows)?,
+                samples: self.count_confirmed(rows)?,
             });
         }
         let with = |set: &Vec<&'static Row>, row| set.iter().copied().chain([row]).collect();
@@ -152,7 +152,7 @@ impl<'a> Search<'a> {
             }
         }
         let first = found.first()?.clone();
-        let samples = self.confirmed(&first)?;
+        let samples = self.count_confirmed(&first)?;
         let is_in = |set: &[&Row], row: &Row| set.iter().any(|other| other.id == row.id);
         let instead = |own: &&'static Row| -> Vec<&'static Row> {
             let others: Vec<&Row> = first.iter().copied().filter(|row| row.id != own.id).collect();
@@ -170,7 +170,7 @@ impl<'a> Search<'a> {
         self.trials.reached(&self.trials.program(set), probe) >= 1.0
             && self.progress(set) >= self.goal()
             && self.is_needed(set)
-            && self.confirmed(set).is_some()
+            && self.count_confirmed(set).is_some()
     }
 
     /// Returns sets of empty stages to begin with: the one that carries furthest, and those detections without which
@@ -275,7 +275,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns how many wrong steps the set reproduces, if that is all of them and all right ones, within the time.
-    fn confirmed(&self, set: &[&'static Row]) -> Option<u64> {
+    fn count_confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.scan.right.iter().chain(&self.scan.wrong) {

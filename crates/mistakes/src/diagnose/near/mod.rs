@@ -11,7 +11,7 @@ use super::{
     about::About,
     sampling::{Reference, Scan},
 };
-use fosssim_judge::fair::applied;
+use fosssim_judge::fair::count_applications;
 use fosssim_model::{
     scene::Scene,
     sim::{Pair, PairKind},
@@ -61,7 +61,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     for kept in steps {
         let own = reference.step(kept.step, &kept.before, &mut ())?;
         let moment = Moment::new(scene, &kept.before);
-        for (pair, times) in applied(scene, &kept.before, own, &kept.records.end.state) {
+        for (pair, times) in count_applications(scene, &kept.before, own, &kept.records.end.state) {
             if left == 0 || !seen.insert((pair, times)) {
                 continue;
             }

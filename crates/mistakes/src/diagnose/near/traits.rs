@@ -130,7 +130,7 @@ traits! {
     NO_AXIS NO_NUMBER "the edge or half-plane is not the first one" "Its number is greater than 0"
         |pair, _, _| pair.pair.kind != PairKind::ParticleParticle && pair.numbers()[1] > 0;
     NO_AXIS COUNTS "the numbers of the particles are far apart" "|i - j| is greater than {n}"
-        |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && apart(pair.numbers()) > n;
+        |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && distance(pair.numbers()) > n;
     ANY_AXIS NO_NUMBER "the bodies are on two sides of where the coordinate is zero {axis}" "0 is between their {axis}"
         |pair, axis, _| are_split(pair.points(), axis, f64::INFINITY, 0.0);
     ANY_AXIS LENGTHS "a border at whole multiples of a round number is between the bodies {axis}"
@@ -221,7 +221,7 @@ fn is_lost_when_exchanged(pair: &PlacedPair<'_>) -> bool {
     pair.edge().is_some() && !(is_there && other.is_near(&pair.moment.before.positions))
 }
 
-fn apart([one, other]: [usize; 2]) -> f64 {
+fn distance([one, other]: [usize; 2]) -> f64 {
     one.abs_diff(other) as f64
 }
 

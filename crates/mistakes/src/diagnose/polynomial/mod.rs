@@ -70,13 +70,13 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     while let Some(key) = best_shared_key(&open) {
         let (covered, rest): (Vec<Suspect>, Vec<Suspect>) =
             open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.guess.key() == key));
-        explanations.push(shared(&covered, &key));
+        explanations.push(explain_shared(&covered, &key));
         open = rest;
     }
     let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
     explanations.extend(open.iter().map(Suspect::alone));
-    explanations.extend(unexplained(&hopeless));
+    explanations.extend(explain_none(&hopeless));
     explanations.extend(missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     explanations
@@ -270,7 +270,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
 }
 
 /// Returns one explanation with the polynomials for which there is none.
-fn unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
+fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
     let first = hopeless.first()?;
     let lines = |suspect: &Suspect| {
         let subject = (hopeless.len() > 1).then_some(suspect.study.subject);
@@ -311,7 +311,7 @@ fn best_shared_key(open: &[Suspect]) -> Option<String> {
 }
 
 /// Returns one explanation for several polynomials.
-fn shared(covered: &[Suspect], key: &str) -> Explanation {
+fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> =
         covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.guess.key() == key)).collect();
     let subjects: Vec<Subject> = covered.iter().map(|suspect| suspect.study.subject).collect();

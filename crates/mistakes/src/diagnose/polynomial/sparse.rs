@@ -78,7 +78,7 @@ impl DesignMatrix {
         for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MOST_FOR_QUADRUPLES))] {
             let mut accepted = Vec::new();
             problem.search(&mut Partial::default(), 0, among, size, &mut |chosen| {
-                if let Some(support) = self.solved(chosen, &fits)
+                if let Some(support) = self.solve(chosen, &fits)
                     && accept(&support)
                 {
                     accepted.push(support);
@@ -109,14 +109,14 @@ impl DesignMatrix {
                 residual.iter_mut().zip(&self.unit[column]).for_each(|(rest, value)| *rest -= weight * value);
             }
             if dot(&residual, &residual) <= SMALL_RESIDUAL * square {
-                return self.solved(&chosen, fits);
+                return self.solve(&chosen, fits);
             }
         }
         None
     }
 
     /// Returns the weights of the original columns.
-    fn solved(&self, chosen: &[usize], fits: &[f64]) -> Option<Support> {
+    fn solve(&self, chosen: &[usize], fits: &[f64]) -> Option<Support> {
         let weights = self.weights(chosen, fits)?;
         let mut support: Support = chosen
             .iter()

@@ -78,15 +78,15 @@ fn is_single(case: &Case) -> bool {
     is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(close)
 }
 
-fn negated(list: &[BoundedValue]) -> Vec<BoundedValue> {
+fn negate(list: &[BoundedValue]) -> Vec<BoundedValue> {
     list.iter().map(|&coefficient| -coefficient).collect()
 }
 
-fn reversed(list: &[BoundedValue]) -> Vec<BoundedValue> {
+fn reverse(list: &[BoundedValue]) -> Vec<BoundedValue> {
     list.iter().rev().copied().collect()
 }
 
-fn predicted(
+fn predict(
     study: &PolynomialStudy,
     guess: ListGuess,
     detail: Option<PolynomialDetail>,
@@ -100,17 +100,17 @@ fn predicted(
 /// Adds guesses with the polynomial's own coefficients in another order or with another sign.
 fn add_rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, cost, change: &dyn Fn(&[BoundedValue]) -> Vec<BoundedValue>| {
-        found.extend(predicted(study, guess, None, cost, |case| change(&case.expected)));
+        found.extend(predict(study, guess, None, cost, |case| change(&case.expected)));
     };
-    check(ListGuess::Reversed, 1.0, &reversed);
-    check(ListGuess::Negated, 1.0, &negated);
-    check(ListGuess::ReversedNegated, 2.5, &|list| negated(&reversed(list)));
+    check(ListGuess::Reversed, 1.0, &reverse);
+    check(ListGuess::Negated, 1.0, &negate);
+    check(ListGuess::ReversedNegated, 2.5, &|list| negate(&reverse(list)));
     check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([BoundedValue::exact(0.0)]).collect());
     for degree in 1..=study.subject.degree() {
         for other in 0..degree {
             let detail = Some(PolynomialDetail::Exchanged { powers: [degree, other] });
             let places = [degree, other].map(|power| study.subject.degree() - power);
-            found.extend(predicted(study, ListGuess::TwoExchanged, detail, 3.0, |case| {
+            found.extend(predict(study, ListGuess::TwoExchanged, detail, 3.0, |case| {
                 let mut list = case.expected.clone();
                 list.swap(places[0], places[1]);
                 list
@@ -128,9 +128,9 @@ fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
         let formula = &readings(other)[0];
         let detail = || Some(PolynomialDetail::InPlaceOf { stands: other, belongs: study.subject });
         let formed = |case: &Case| formula.polynomial(&case.inputs);
-        found.extend(predicted(study, ListGuess::OtherPolynomial, detail(), 1.5, formed));
-        let negative = |case: &Case| negated(&formed(case));
-        found.extend(predicted(study, ListGuess::OtherPolynomialNegated, detail(), 3.0, negative));
+        found.extend(predict(study, ListGuess::OtherPolynomial, detail(), 1.5, formed));
+        let negative = |case: &Case| negate(&formed(case));
+        found.extend(predict(study, ListGuess::OtherPolynomialNegated, detail(), 3.0, negative));
     }
 }
 
@@ -140,9 +140,9 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
         let (last, first) = (PolynomialDetail::LastOnly(length), PolynomialDetail::FirstOnly(length));
         let end = |case: &Case| case.expected[case.expected.len() - length..].to_vec();
-        found.extend(predicted(study, guess, Some(last), 2.0 + 0.01 * length as f64, end));
+        found.extend(predict(study, guess, Some(last), 2.0 + 0.01 * length as f64, end));
         let beginning = |case: &Case| case.expected[..length].to_vec();
-        found.extend(predicted(study, ListGuess::CutEnd, Some(first), 2.5, beginning));
+        found.extend(predict(study, ListGuess::CutEnd, Some(first), 2.5, beginning));
     }
 }
 
@@ -157,13 +157,13 @@ fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     }
     let factor = BoundedValue { value: factor, bound: 16.0 * factor };
     let detail = PolynomialDetail::Displacements(factor.value);
-    predicted(study, ListGuess::DisplacementScale, Some(detail), 3.0, |case| {
+    predict(study, ListGuess::DisplacementScale, Some(detail), 3.0, |case| {
         let mut power = BoundedValue::exact(1.0);
-        let mut list = reversed(&case.expected);
+        let mut list = reverse(&case.expected);
         for coefficient in &mut list {
             *coefficient = *coefficient * power;
             power = power * factor;
         }
-        reversed(&list)
+        reverse(&list)
     })
 }

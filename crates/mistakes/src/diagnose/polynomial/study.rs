@@ -92,7 +92,7 @@ impl<'a> PolynomialStudy<'a> {
         if cases.iter().all(|case| case.right) {
             return None;
         }
-        let cases = thinned(cases);
+        let cases = thin(cases);
         let all_wrong: Vec<usize> = (0..cases.len()).filter(|&index| !cases[index].right).collect();
         let probes = spread(all_wrong.len(), PROBES).map(|index| all_wrong[index]).collect();
         let mut study = Self { subject, cases, wrong: all_wrong.len(), probes };
@@ -299,7 +299,7 @@ fn forgive_small_scales(cases: &mut [Case]) {
 }
 
 /// Keeps at most [`MOST_CASES`] samples, most of them wrong ones, in their order.
-fn thinned(cases: Vec<Case>) -> Vec<Case> {
+fn thin(cases: Vec<Case>) -> Vec<Case> {
     if cases.len() <= MOST_CASES {
         return cases;
     }

@@ -72,7 +72,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
         case.logged.len() <= formula.degree + 1
             && (0..=formula.degree).all(|power| {
                 let guess = guesses.iter().find(|guess| guess.power == power);
-                let predicted = fitting.predicted(index, power, guess.map(FormulaGuess::edit));
+                let predicted = fitting.predict(index, power, guess.map(FormulaGuess::edit));
                 coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
             })
     };
@@ -124,7 +124,7 @@ impl<'a> Fitting<'a> {
         (0..self.study.cases.len()).any(|index| !self.holds(index, power, self.coefficient(index, power)))
     }
 
-    fn predicted(&self, index: usize, power: usize, edit: Option<&Edit>) -> BoundedValue {
+    fn predict(&self, index: usize, power: usize, edit: Option<&Edit>) -> BoundedValue {
         let expected = self.coefficient(index, power);
         match edit {
             None | Some(Edit::Unknown) => expected,
@@ -136,7 +136,7 @@ impl<'a> Fitting<'a> {
     }
 
     fn explains_all(&self, power: usize, edit: &Edit) -> bool {
-        (0..self.study.cases.len()).all(|index| self.holds(index, power, self.predicted(index, power, Some(edit))))
+        (0..self.study.cases.len()).all(|index| self.holds(index, power, self.predict(index, power, Some(edit))))
     }
 
     /// Returns the explanations of a coefficient that hold for all samples.
@@ -197,7 +197,7 @@ impl<'a> Fitting<'a> {
         });
         let mut found = Vec::new();
         prepared.supports(&target, |support| {
-            let Some(changes) = snapped(support) else { return false };
+            let Some(changes) = snap(support) else { return false };
             let edit = Edit::Terms(changes);
             let holds = self.explains_all(power, &edit);
             if let (true, Edit::Terms(changes)) = (holds, edit) {
@@ -262,7 +262,7 @@ impl<'a> Fitting<'a> {
 }
 
 /// Rounds weights to multiples of [`WEIGHT_STEP`]; `None` if they are none.
-fn snapped(support: &Support) -> Option<Vec<(usize, f64)>> {
+fn snap(support: &Support) -> Option<Vec<(usize, f64)>> {
     support
         .iter()
         .map(|&(product, weight)| {

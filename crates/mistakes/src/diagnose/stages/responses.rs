@@ -39,7 +39,7 @@ impl Responses {
         let in_rounds = matches!(scene.collision, Collision::Hybrid { .. });
         let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, in_rounds };
         for facts in facts {
-            for (hit, expected, actual) in isolated(scene, facts) {
+            for (hit, expected, actual) in find_isolated(scene, facts) {
                 let mut changes: Vec<(ChangedQuantity, Change)> = Vec::new();
                 for (body, particle) in bodies(scene, hit.pair).into_iter().enumerate() {
                     for quantity in [Quantity::Position, Quantity::Velocity] {
@@ -111,7 +111,7 @@ impl Responses {
 
 /// Returns the contacts of a step whose bodies have no other contact, with the expected and the actual state after
 /// them.
-fn isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a State, &'a State)> {
+fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'a State, &'a State)> {
     let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
     let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);
     let is_alone = |hit: &&Hit| {

@@ -46,25 +46,26 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
 /// left, which are right within round-off, and small coefficients depend on that.
 fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
-    let pass = behind(facts, 0) / facts.pass_size();
-    let differs = facts.right_polynomials < behind(facts, 1).min(facts.expected.end.polynomials.len());
+    let pass = count_after(facts, 0) / facts.pass_size();
+    let differs = facts.right_polynomials < count_after(facts, 1).min(facts.expected.end.polynomials.len());
     differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
 }
 
 /// Returns the index of the first polynomial behind this number of passes of the geometric part.
-fn behind(facts: &StepFacts, passes: usize) -> usize {
+fn count_after(facts: &StepFacts, passes: usize) -> usize {
     facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
 /// Returns the first geometric pass, if it is not about the positions that the impulse rounds left.
 fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
-    let is_wrong = |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < behind(facts, 1);
+    let is_wrong =
+        |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < count_after(facts, 1);
     let seen: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
     if seen.is_empty() {
         return None;
     }
     let is_prediction = |facts: &&&StepFacts| {
-        let pass = behind(facts, 0) / facts.pass_size();
+        let pass = count_after(facts, 0) / facts.pass_size();
         facts.detects(scene, pass, &facts.prediction.positions, |_| true)
     };
     let positions = if seen.iter().all(is_prediction) { WrongPositions::Prediction } else { WrongPositions::First };
@@ -77,8 +78,8 @@ fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
         let Some((_, middle)) = facts.middles() else { return false };
         let (middle, end) = (&middle.state.positions, &facts.actual.end.state.positions);
-        let pass = behind(facts, 1) / facts.pass_size();
-        facts.right_polynomials < behind(facts, 2)
+        let pass = count_after(facts, 1) / facts.pass_size();
+        facts.right_polynomials < count_after(facts, 2)
             && middle.iter().zip(end).any(|(ours, theirs)| (ours - theirs).abs() > SMALL * (1.0 + ours.abs()))
             && facts.detects(scene, pass, middle, |_| true)
     };
@@ -97,7 +98,7 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
             ends.push(*facts);
         } else if all_right && facts.logged_passes().is_some() {
             *(if theirs < ours { &mut fewer } else { &mut more }) += 1;
-        } else if facts.right_polynomials >= behind(facts, 2) {
+        } else if facts.right_polynomials >= count_after(facts, 2) {
             later += 1;
         } else {
             return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len()));
@@ -297,7 +298,7 @@ impl MotionErrors {
             });
         }
         if !self.is_bent && !is_one(&self.turns) {
-            wrong.push(turned(&self.turns));
+            wrong.push(describe_turn(&self.turns));
             if self.turns.iter().all(|ratio| ratio.is_finite()) {
                 details.push(StageDetail::Turns(ratios(&self.turns)));
             }
@@ -313,7 +314,7 @@ impl MotionErrors {
 }
 
 /// Returns the rotations of zones, if some do not turn as expected.
-fn turned(ratios: &[f64]) -> WrongMotion {
+fn describe_turn(ratios: &[f64]) -> WrongMotion {
     let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
     if wrong().all(|ratio| ratio.abs() <= ALIKE) {
         WrongMotion::NoTurn

@@ -111,7 +111,7 @@ impl Detector {
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
         let begin = self.counts.work();
         let is_slow = have_subnormal_products(q_start) || have_subnormal_products(&self.displacements);
-        let (mut place, mut hits) = (PassCursor::at(0), 0);
+        let (mut place, mut hits) = (PassCursor::from_first(0), 0);
         if self.has_lanes && !matches!(observer.wanted(), WantedPairs::Calls) {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
@@ -125,7 +125,7 @@ impl Detector {
                     }
                 }
             }
-            place = PassCursor::at(first + 1);
+            place = PassCursor::from_first(first + 1);
         }
         context.observer.end_pass(pass, context.hits);
         if is_slow {

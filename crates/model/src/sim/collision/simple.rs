@@ -34,7 +34,7 @@ pub(super) fn handle<O: Observer>(
     };
     let mut looking = RunningPass { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
     for i in 0..bodies.particles() {
-        let [particles, edges, half_planes] = bodies.objects().row(PassCursor::at(i));
+        let [particles, edges, half_planes] = bodies.objects().row(PassCursor::from_first(i));
         if let Some(found) = &mut found {
             let [particles, edges] = found.next(i);
             particles.for_each(|j| looking.try_particles(i, j));

@@ -45,7 +45,7 @@ const fn numbers(first: u32, second: u32) -> Numbers {
 }
 
 /// Returns both numbers.
-fn apart(numbers: Numbers) -> [usize; 2] {
+fn differ_by(numbers: Numbers) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }
 
@@ -60,9 +60,9 @@ impl<'a> NearRows<'a> {
     /// Returns the later particles, and the edges, that are near a particle. Called for particles in their order.
     pub fn next(&mut self, particle: usize) -> [impl Iterator<Item = usize> + use<'a>; 2] {
         [&mut self.particles, &mut self.edges].map(|list| {
-            let (own, later) = list.split_at(list.iter().take_while(|&&pair| apart(pair)[0] <= particle).count());
+            let (own, later) = list.split_at(list.iter().take_while(|&&pair| differ_by(pair)[0] <= particle).count());
             *list = later;
-            own.iter().map(|&pair| apart(pair)[1])
+            own.iter().map(|&pair| differ_by(pair)[1])
         })
     }
 }
@@ -159,7 +159,7 @@ fn everywhere(_: [f64; 2]) -> [f64; 2] {
 }
 
 /// Returns a little more than a distance at these places, for all roundings on the way to a vector between them.
-fn widened(reach: f64, places: [Vec2; 2]) -> f64 {
+fn widen(reach: f64, places: [Vec2; 2]) -> f64 {
     let most = places.iter().fold(0.0_f64, |most, place| most.max(place.x.abs()).max(place.y.abs()));
     reach * (1.0 + 1e-9) + most * 1e-12 + LEAST_REACH
 }
@@ -173,7 +173,7 @@ fn around(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
         return None;
     }
     let [one, other] = places;
-    let room = widened(reach, places);
+    let room = widen(reach, places);
     let room = Vec2::new(room, room);
     let low = Vec2::new(one.x.min(other.x), one.y.min(other.y)) - room;
     Some(Rectangle { low, high: Vec2::new(one.x.max(other.x), one.y.max(other.y)) + room })
@@ -194,7 +194,7 @@ fn near_edge(
     let Some(rectangle) = around(ends, reach) else { return 0 };
     let [x2, x3] = ends;
     let x32 = x3 - x2;
-    let (squared, room) = (x32.dot(&x32), widened(reach, ends));
+    let (squared, room) = (x32.dot(&x32), widen(reach, ends));
     // The part of a row that the edge crosses; all of it if that is not known well.
     let narrow = |[low, high]: [f64; 2]| {
         let times = [(low - room - x2.y) / x32.y, (high + room - x2.y) / x32.y].map(|time| time.clamp(0.0, 1.0));

@@ -78,7 +78,7 @@ pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
         };
         match variations(&stretched) {
             0 => {}
-            1 => roots.push(isolated(polynomial, start, exponent)),
+            1 => roots.push(isolate_root(polynomial, start, exponent)),
             _ => {
                 let left = stretched.halved();
                 let right = left.shifted();
@@ -111,7 +111,7 @@ fn variations(polynomial: &Integer) -> usize {
 }
 
 /// Returns the only zero in an open interval whose ends may be zeros, too: narrowed until they are none.
-fn isolated(polynomial: &Integer, start: BigInt, exponent: u64) -> Root {
+fn isolate_root(polynomial: &Integer, start: BigInt, exponent: u64) -> Root {
     let end: BigInt = &start + 1;
     let (lo, hi) = (Dyadic { numerator: start, exponent }, Dyadic { numerator: end, exponent });
     let before = polynomial.sign_after(&lo);

@@ -81,7 +81,7 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
         table.row([
             name.into(),
             score.into(),
-            Cell::looking(verdict_look(group.verdict), group.verdict.code()),
+            Cell::with_look(verdict_look(group.verdict), group.verdict.code()),
             share(group).into(),
         ]);
     }

@@ -53,14 +53,15 @@ impl Text<'_> {
         let mut text = String::new();
         if self.shown == TextDetail::Table && grades.len() > 1 {
             let unfit = |grade: &Grade| {
-                let why = words::unfit(grade)?;
+                let why = words::describe_unfit(grade)?;
                 Some(format!("{}: {}\n", table::shortened(&one_line(&grade.submission)), one_line(&why)))
             };
             return table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
         }
         for grade in grades {
             if self.shown == TextDetail::Line {
-                let why = words::unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
+                let why =
+                    words::describe_unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
                 self.write_submission(&mut text, grade, grades.len() > 1);
@@ -108,7 +109,7 @@ impl Text<'_> {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
         let build = grade.failed_build();
-        if let (Some(unfit), None) = (words::unfit(grade), build) {
+        if let (Some(unfit), None) = (words::describe_unfit(grade), build) {
             let _ = writeln!(text, "{}", one_line(&unfit));
         }
         if let Some(build) = build {

@@ -19,7 +19,7 @@ pub(crate) use places::place;
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
         About::Mistake => known(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key)),
-        About::Unfinished => format!("Not written yet: {}.", unfinished(&explanation.same_as)),
+        About::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
         About::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
             format!("Does this trace belong to this scene? Its first record is not the scene's{length}.")
@@ -102,7 +102,7 @@ pub(crate) fn known(key: &str) -> Option<String> {
 }
 
 /// Returns the stages that are not written yet, in a few words each.
-fn unfinished(keys: &[String]) -> String {
+fn describe_unfinished(keys: &[String]) -> String {
     let stages: Vec<String> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
     stages.join(", ")
 }
@@ -147,7 +147,7 @@ fn look_at_step(key: &str) -> &'static str {
 }
 
 /// Returns the first letter in upper case.
-fn capitalized(text: &str) -> String {
+fn capitalize(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     first + letters.as_str()

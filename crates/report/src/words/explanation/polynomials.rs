@@ -1,5 +1,5 @@
 //! Sentences about wrong polynomials.
-use super::{capitalized, letters};
+use super::{capitalize, letters};
 use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter};
 
@@ -7,7 +7,7 @@ use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_exchange
 pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
-    let place = capitalized(&names);
+    let place = capitalize(&names);
     match found {
         OfPolynomials::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
         OfPolynomials::Missing => format!("Polynomials are not handed over: {names}."),
@@ -90,14 +90,14 @@ fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
 }
 
 /// Returns a letter with its meaning.
-fn described(reading: Reading, name: &str) -> String {
+fn describe_letter(reading: Reading, name: &str) -> String {
     meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
 }
 
 fn stands_for(reading: Reading, letter: &str, stand: &Substitute) -> String {
     let stand = match stand {
         Substitute::Scaled(factor) => format!("{factor} {letter}"),
-        Substitute::Letter(other) => described(reading, other),
+        Substitute::Letter(other) => describe_letter(reading, other),
         Substitute::Dot { vectors: [one, two], negated } => format!("{}{one}.{two}", if *negated { "-" } else { "" }),
         Substitute::One => "1".to_owned(),
     };
@@ -109,8 +109,11 @@ fn stands_for(reading: Reading, letter: &str, stand: &Substitute) -> String {
 
 fn describe_weight(weight: &Weight) -> String {
     let Weight { reading, power, letters, expected, actual } = weight;
-    let mut meanings: Vec<String> =
-        letters.iter().filter(|name| meaning(*reading, name).is_some()).map(|name| described(*reading, name)).collect();
+    let mut meanings: Vec<String> = letters
+        .iter()
+        .filter(|name| meaning(*reading, name).is_some())
+        .map(|name| describe_letter(*reading, name))
+        .collect();
     meanings.dedup();
     let meanings = if meanings.is_empty() { String::new() } else { format!(" ({})", meanings.join(", ")) };
     format!("t^{power}: {} has weight {actual}, expected {expected}{meanings}", letters.join(" "))

@@ -1,5 +1,5 @@
 //! Sentences about stages of a step that no known mistake explains.
-use super::capitalized;
+use super::capitalize;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange,
     WrongGeometric, WrongResponses,
@@ -8,11 +8,11 @@ use fosssim_model::sim::PairKind;
 
 /// Returns the fault of a stage, with its place in front.
 pub(super) fn what(fault: &StageFault) -> String {
-    format!("{}: {}.", place(fault), capitalized(&describe_fault(fault)))
+    format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
 }
 
 /// Returns the parts of the assignment that may hold it, with the only kind of pair that it concerns, if there is one.
-fn place(fault: &StageFault) -> String {
+fn describe_place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
         Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
@@ -20,8 +20,8 @@ fn place(fault: &StageFault) -> String {
     };
     let areas = if fault.kind().is_some() { areas.replace("collision response", "response") } else { areas };
     match fault.kind() {
-        Some(kind) => format!("{} {areas}", capitalized(kind.name())),
-        None => capitalized(&areas),
+        Some(kind) => format!("{} {areas}", capitalize(kind.name())),
+        None => capitalize(&areas),
     }
 }
 
@@ -184,7 +184,7 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
                 Amount::Ratio(ratios) => format!("by {} what it should", times(*ratios)),
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
-            let (place, quantity) = (capitalized(changed.kind.name()), singular(changed.quantity));
+            let (place, quantity) = (capitalize(changed.kind.name()), singular(changed.quantity));
             let body = body(changed);
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }

@@ -57,7 +57,7 @@ impl TransferLimits {
 
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
         let most = self.transfers;
-        let of_account = shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
+        let of_account = find_shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
         let many = |_| Problem::too_many(format!("an account may have {most} uploads and downloads at one time"));
         let of_account = of_account.map_err(many)?;
         let of_all = OF_ALL.try_acquire();
@@ -67,14 +67,14 @@ impl TransferLimits {
 
     /// Waits until no other upload for an account is handled by this server.
     pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
-        let turn = shared(&self.turns, account, Default::default);
+        let turn = find_shared(&self.turns, account, Default::default);
         let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
         turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
     }
 }
 
 /// Returns the value that the tasks of an account share, while one of them holds it.
-fn shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
+fn find_shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, one| Arc::strong_count(one) > 1);
     all.entry(account).or_insert_with(|| Arc::new(new())).clone()

@@ -155,7 +155,7 @@ impl Settings {
         let words = |name: &String| match (name.as_str(), new.get(name)) {
             (_, None) => format!("no {name}"),
             ("due_at", Some(Value::Number(due))) => {
-                format!("{name} {} UTC", calendar::minute(due.as_i64().unwrap_or_default()))
+                format!("{name} {} UTC", calendar::format_minute(due.as_i64().unwrap_or_default()))
             }
             (_, Some(Value::String(text))) => format!("{name} {text}"),
             (_, Some(value)) => format!("{name} {value}"),

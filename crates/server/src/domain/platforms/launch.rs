@@ -205,7 +205,7 @@ async fn arrive(
         Some((link, assignment)) => {
             columns(transaction, link, arrival).await?;
             if !staff {
-                score::arrived(transaction, link, account).await?;
+                score::note_arrival(transaction, link, account).await?;
             }
             let session = identity::begin_session(transaction, account, Way::Own).await?;
             Ok(LaunchTarget { session, to: format!("/c/{slug}/a/{assignment}") })

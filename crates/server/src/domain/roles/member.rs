@@ -15,7 +15,7 @@ use crate::{
 use futures_util::StreamExt;
 
 /// The report that holds no group that its suite hides from students.
-const SHOWN: &str = "report.html";
+const STUDENT_PAGE: &str = "report.html";
 
 /// A member of a course.
 pub struct Member {
@@ -120,7 +120,7 @@ impl Member {
         if self.is_staff || submission.is_published {
             // The page without hidden groups.
             if files.iter().any(|file| file.name == PUBLISHED_PAGE) {
-                files.retain(|file| file.name != SHOWN);
+                files.retain(|file| file.name != STUDENT_PAGE);
             }
             return Ok(());
         }
@@ -130,7 +130,7 @@ impl Member {
             None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
         if let Some(shown) = ShownGrade::read(&kept) {
-            shown.cover(&mut grade.outcome, SHOWN);
+            shown.cover(&mut grade.outcome, STUDENT_PAGE);
             grade.created_at = shown::hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);

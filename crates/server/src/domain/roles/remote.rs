@@ -76,8 +76,8 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
-        let fault = fault.map(|fault| plain(fault, 2000));
-        let source = self.source().with_version(plain(version, 60));
+        let fault = fault.map(|fault| strip_controls(fault, 2000));
+        let source = self.source().with_version(strip_controls(version, 60));
         source.tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
         let tick_every = self.app.0.policy.tick_every().as_millis();
         let tick_every = u64::try_from(tick_every).unwrap_or(u64::MAX);
@@ -105,7 +105,7 @@ impl Remote {
     /// # Errors
     /// When the database does not answer.
     pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
-        Ok(self.owns(lease).await? && self.source().fail(lease, &plain(fault, 2000)).await?.held)
+        Ok(self.owns(lease).await? && self.source().fail(lease, &strip_controls(fault, 2000)).await?.held)
     }
 
     /// Stores a result. A worker is not trusted: the result may name only files that the worker stored for this job.
@@ -116,11 +116,11 @@ impl Remote {
         if !self.owns(lease).await? {
             return Ok(false);
         }
-        let outcome = self.checked(lease, outcome).await?;
+        let outcome = self.check_outcome(lease, outcome).await?;
         Ok(self.source().finish(lease, &outcome).await?.held)
     }
 
-    async fn checked(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
+    async fn check_outcome(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
         let short = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
         if !short(&outcome.code) || outcome.code == crate::task::JUDGE_ERROR {
             return Err(Problem::invalid("the verdict's code is unknown"));
@@ -139,9 +139,9 @@ impl Remote {
             return Err(Problem::invalid("points must be between 0 and the maximum"));
         }
         let mut outcome = outcome.clone();
-        outcome.verdict = plain(&outcome.verdict, 200);
-        outcome.summary = plain(&outcome.summary, 2000);
-        outcome.version = plain(&outcome.version, 60);
+        outcome.verdict = strip_controls(&outcome.verdict, 200);
+        outcome.summary = strip_controls(&outcome.summary, 2000);
+        outcome.version = strip_controls(&outcome.version, 60);
         let is_digest = |text: &str| text.parse::<Digest>().is_ok();
         ensure(outcome.grader.is_empty() || is_digest(&outcome.grader), Problem::invalid("grader must be a digest"))?;
         let mut transaction = self.app.0.database.first().read().await?;
@@ -149,7 +149,7 @@ impl Remote {
         for file in &mut outcome.files {
             // A report's name and media type are not the worker's to choose.
             let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
-                return Err(Problem::invalid(format!("no report is called {}", plain(&file.name, 60))));
+                return Err(Problem::invalid(format!("no report is called {}", strip_controls(&file.name, 60))));
             };
             ensure(names.insert(file.name.clone()), Problem::invalid("two reports have the same name"))?;
             file.media_type = (*media_type).to_owned();
@@ -220,6 +220,6 @@ const MOST_POINTS: f64 = 1e9;
 const MANY_SLOTS: usize = 256;
 
 /// Returns words of a stranger: one line, not too long, without orders to terminals.
-fn plain(text: &str, most: usize) -> String {
+fn strip_controls(text: &str, most: usize) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
 }

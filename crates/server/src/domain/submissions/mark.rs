@@ -197,7 +197,8 @@ impl Staff {
         if let Some(last) = transaction.one(statement, values![assignment.id, account]).await?.maybe_int("id")? {
             score::note_change(&mut transaction, last).await?;
         }
-        let until = due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::minute(due)));
+        let until =
+            due_at.map_or("as all others".to_owned(), |due| format!("until {} UTC", calendar::format_minute(due)));
         let text = format!("{login} hands in {until}");
         self.note(&mut transaction, "extension", Some(assignment.id), &text).await?;
         Ok(self.app.0.notifier.commit(transaction).await?)

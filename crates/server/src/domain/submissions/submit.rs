@@ -185,7 +185,7 @@ impl Member {
             let detail = format!(
                 "at most {} submissions in an hour: the next one is possible from {} UTC",
                 settings.per_hour,
-                calendar::minute(again + MINUTE - 1)
+                calendar::format_minute(again + MINUTE - 1)
             );
             let wait = (again - row.int("now")?).max(0).unsigned_abs().div_ceil(1000);
             return Err(Problem { wait: Some(wait), ..Problem::too_many(detail) });

@@ -21,7 +21,7 @@ pub(super) struct OtherSubmission {
 
 #[derive(Template)]
 #[template(path = "beside.html")]
-struct BesidePage {
+struct ComparisonPage {
     frame: PageFrame,
     slug: String,
     both: [Submission; 2],
@@ -72,7 +72,7 @@ pub(super) async fn page(
     let scenes = differing(&first.failed, &second.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
     let frame = grades::frame(&staff, &assignment).then(address, "Side by side");
-    show(&BesidePage { frame, slug, both: [one, other], scenes })
+    show(&ComparisonPage { frame, slug, both: [one, other], scenes })
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
     let mut suites = Vec::new();
     for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
         let name = if name.is_empty() { text::short(&digest) } else { &name };
-        let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::minute(at))).unwrap_or_default();
+        let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
         let is_this = settings.suite_archive.as_ref() == Some(&digest);
         suites.push((format!("{UPLOADED}{digest}"), format!("{name} (yours{at})"), is_this));
     }

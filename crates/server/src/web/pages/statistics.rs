@@ -68,8 +68,8 @@ impl Statistics {
             students: standings.len(),
             parts: PARTS.map(|(name, words)| (name, words, count(name))).to_vec(),
             points: points.map(|count| (number(mean(count)), number(middle(count)))),
-            mistakes: shared(standings, mistake),
-            same: shared(standings, |counts| Some(counts.digest.as_str()).filter(|digest| !digest.is_empty()))
+            mistakes: find_shared(standings, mistake),
+            same: find_shared(standings, |counts| Some(counts.digest.as_str()).filter(|digest| !digest.is_empty()))
                 .into_iter()
                 .filter(|(_, logins, _)| logins.len() > 1)
                 .collect(),
@@ -90,7 +90,7 @@ fn share(counts: &CountedSubmission) -> Option<f64> {
 }
 
 /// Returns the mistakes that students share, the most frequent first.
-fn shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
+fn find_shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {
         let Some((counts, name)) = standing.counts.as_ref().and_then(|counts| Some((counts, of(counts)?))) else {

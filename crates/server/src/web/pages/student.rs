@@ -44,7 +44,7 @@ struct ImportPage {
     frame: PageFrame,
     slug: String,
     table: String,
-    lines: Vec<Line>,
+    lines: Vec<ImportRow>,
     /// The columns of which nothing is kept.
     left_out: BTreeSet<String>,
     is_wrong: bool,
@@ -55,9 +55,9 @@ struct ImportPage {
     seen: i64,
 }
 
-/// A line of the table, and the link to be handed on.
-struct Line {
-    of: MemberLine,
+/// A row of the imported table, with the link to hand on.
+struct ImportRow {
+    member: MemberLine,
     link: String,
     /// A letter with the link, as an address.
     letter: String,
@@ -109,21 +109,22 @@ fn points(field: &str) -> Option<String> {
     }
 }
 
-async fn import_page(staff: &Staff, table: String, lines: Vec<Line>, is_done: bool) -> Page {
+async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_done: bool) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff)
         .then(format!("/c/{slug}/members"), "Members")
         .then(format!("/c/{slug}/members/import"), "Import");
-    let is_wrong = lines.iter().any(|line| line.of.error.is_some());
+    let is_wrong = lines.iter().any(|line| line.member.error.is_some());
     let mut writer = csv::Writer::from_writer(Vec::new());
     for line in &lines {
-        let cells = [&line.of.name, &line.of.login, &line.of.email, &line.of.role, &line.link].map(|text| cell(text));
+        let cells = [&line.member.name, &line.member.login, &line.member.email, &line.member.role, &line.link]
+            .map(|text| cell(text));
         writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
     let seen = staff.last_event().await?;
     let download = format!("data:text/csv;charset=utf-8,{}", percent(&bytes));
-    let left_out = lines.iter().flat_map(|line| line.of.unused.clone()).collect();
+    let left_out = lines.iter().flat_map(|line| line.member.unused.clone()).collect();
     show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
@@ -132,11 +133,11 @@ fn percent(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
-fn line(course: &str, of: MemberLine) -> Line {
+fn line(course: &str, of: MemberLine) -> ImportRow {
     let link = of.link.clone().unwrap_or_default();
     let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
     let letter = format!("mailto:{}?subject={subject}&body={body}", percent(of.email.as_bytes()));
-    Line { of, link, letter }
+    ImportRow { member: of, link, letter }
 }
 
 pub(super) async fn import(staff: Staff) -> Page {

@@ -8,13 +8,13 @@ use crate::{
 
 /// Returns a moment, as markup: in UTC, which a script makes the reader's own time.
 pub(super) fn time(milliseconds: &i64) -> String {
-    let (exact, minute) = (calendar::exact(*milliseconds), calendar::minute(*milliseconds));
+    let (exact, minute) = (calendar::exact(*milliseconds), calendar::format_minute(*milliseconds));
     format!("<time datetime=\"{exact}\">{minute} UTC</time>")
 }
 
 /// Returns a moment for a field of a form, in UTC: `2026-11-22T08:45`.
 pub(super) fn field(milliseconds: &Option<i64>) -> String {
-    milliseconds.map(|at| calendar::minute(at).replace(' ', "T")).unwrap_or_default()
+    milliseconds.map(|at| calendar::format_minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
 /// Returns the points of the most that could be had, to two digits as in reports; a dash where there are none.

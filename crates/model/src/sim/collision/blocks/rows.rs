@@ -54,7 +54,7 @@ impl Work for Pairs<'_> {
             if ends {
                 return found;
             }
-            *self.place = PassCursor::at(first + 1);
+            *self.place = PassCursor::from_first(first + 1);
         }
         Ok(None)
     }

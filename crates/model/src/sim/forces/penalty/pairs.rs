@@ -58,7 +58,7 @@ impl PenaltyPairs {
         let particles = self.radii.len();
         let edges = &self.edges;
         let objects = Objects { particles, edges: edges.len(), half_planes: self.half_planes };
-        let row = |i: usize| objects.row(PassCursor::at(i));
+        let row = |i: usize| objects.row(PassCursor::from_first(i));
         let edges_of = |i: usize| (0..edges.len()).filter(move |&edge| !is_end(edges[edge], i));
         if let Some(sweep) = &mut self.sweep {
             sweep.update(x);
