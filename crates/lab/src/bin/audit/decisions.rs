@@ -12,7 +12,24 @@ use fosssim_oracle::num::{
 const UNITS: f64 = 64.0;
 
 /// The reasons why root finder and certified decision differ: intentions of the original, or its rounding.
-const REASONS: [&str; 3] = ["c t^m", "dropped terms", "rounding"];
+const REASONS: [&str; 3] = [
+    "c t^m counts as nowhere positive in the original",
+    "the original drops small leading coefficients",
+    "the search rounds",
+];
+
+/// The words for the levels of decisions, in their order.
+const LEVELS: [&str; Level::ALL.len()] =
+    ["signs of coefficients", "Bernstein coefficients", "parts of the step", "exact arithmetic"];
+
+/// Returns what the search found.
+pub(super) fn found(time: Option<f64>) -> String {
+    match time {
+        None => "the search never ends".to_owned(),
+        Some(time) if time.is_infinite() => "the search finds no impact".to_owned(),
+        Some(time) => format!("the search finds an impact at {time}"),
+    }
+}
 
 /// Certified decisions of one pair type, compared with those of the root finder.
 #[derive(Default)]
@@ -60,7 +77,11 @@ impl Decisions {
         self.differ[reason][usize::from(decision.certainty == Certainty::Yes)] += 1;
         if self.first[reason].as_ref().is_none_or(|&(first, _)| index < first) {
             let coefficients: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
-            self.first[reason] = Some((index, format!("{geometry}: {decision:?} but {time:?}\n    {coefficients:?}")));
+            let decided = decision.time.map_or("certainly no impact".to_owned(), |[from, to]| {
+                format!("certainly an impact between {from} and {to}")
+            });
+            let words = format!("{geometry}: {decided}, but {}\n      {coefficients:?}", found(Some(time)));
+            self.first[reason] = Some((index, words));
         }
     }
 
@@ -81,14 +102,16 @@ impl Decisions {
     /// Writes the table of one pair type.
     pub(super) fn report(&self, name: &str, text: &mut String) {
         let [yes, no, borderline] = self.certainties;
-        let _ = writeln!(text, "{name}, certified: {yes} yes, {no} no, {borderline} borderline");
-        for level in Level::ALL {
-            let _ = writeln!(text, "  {:<12} {:>12}", format!("{level:?}"), self.levels[level as usize]);
+        let _ = writeln!(text, "{name}: an impact in {yes}, none in {no}, undecidable in {borderline}. Decided by");
+        for (words, count) in LEVELS.iter().zip(self.levels) {
+            let _ = writeln!(text, "  {words:<22} {count:>12}");
         }
         for ((reason, [hits, misses]), first) in REASONS.iter().zip(self.differ).zip(&self.first) {
-            let _ = writeln!(text, "  search differs, {reason}: {hits} no but hit, {misses} yes but not");
+            if hits + misses > 0 {
+                let _ = writeln!(text, "  {reason}: it finds {hits} impacts that are none, and misses {misses}");
+            }
             if let Some((index, what)) = first {
-                let _ = writeln!(text, "    first: detection {index}, {what}");
+                let _ = writeln!(text, "    first in detection {index}, {what}");
             }
         }
     }

@@ -65,6 +65,9 @@ fn certificates(detections: u64, seed: u64) -> ExitCode {
     ExitCode::from(u8::from(total.disagreements > 0))
 }
 
+/// The words for the levels of the certificate, in their order.
+const LEVELS: [&str; Level::ALL.len()] = ["nowhere positive", "a line", "a parabola", "Bernstein coefficients"];
+
 /// The three pair types, in the order of collisions.md 1, and bare products.
 const PAIRS: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-plane", "product"];
 
@@ -99,7 +102,12 @@ impl AuditTally {
             self.disagreements += 1;
             if self.first.as_ref().is_none_or(|&(first, _)| index < first) {
                 let lists: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
-                let what = format!("{} ({geometry}): {level:?} but {time:?}\n{lists:?}", PAIRS[pair]);
+                let certificate = level.map_or("one polynomial alone", |level| LEVELS[level as usize]);
+                let what = format!(
+                    "{} ({geometry}): {certificate} excludes an impact, but {}\n{lists:?}",
+                    PAIRS[pair],
+                    decisions::found(time.ok())
+                );
                 self.first = Some((index, what));
             }
         }
@@ -128,26 +136,29 @@ impl AuditTally {
             let row = &self.decided[pair];
             let sum: u64 = row.iter().sum();
             let share = |count: u64| 100.0 * count as f64 / sum.max(1) as f64;
-            let _ = writeln!(text, "{name}: {sum} detections");
-            for level in Level::ALL {
-                let count = row[level as usize];
-                let _ = writeln!(text, "  {:<12} {count:>12} {:>6.2} %", format!("{level:?}"), share(count));
+            let _ = writeln!(text, "{name}: {sum} detections. An impact within the step is excluded by");
+            for (words, count) in LEVELS.iter().chain(["nothing: searched"].iter()).zip(row) {
+                let _ = writeln!(text, "  {words:<22} {count:>12} {:>6.2} %", share(*count));
             }
-            let undecided = row[Level::ALL.len()];
-            let _ = writeln!(text, "  undecided    {undecided:>12} {:>6.2} %", share(undecided));
             let _ = writeln!(
                 text,
-                "  of these the search excludes {} and never ends in {}",
+                "  The search finds no impact in {} of the latter, and never ends in {}.",
                 self.needless[pair], self.endless[pair]
             );
         }
-        let _ = writeln!(text, "disagreements: {}", self.disagreements);
-        if let Some((index, what)) = &self.first {
-            let _ = writeln!(text, "first: detection {index}, {what}");
-        }
+        text += "\nCertified decisions of the fair rules, which are true, and the search, which rounds:\n";
         for (decisions, name) in self.decisions.iter().zip(PAIRS) {
             decisions.report(name, &mut text);
         }
+        // What the exit code says comes last.
+        let _ = match &self.first {
+            None => {
+                writeln!(text, "\ndisagreements: 0. Where a certificate excludes an impact, the search finds none.")
+            }
+            Some((index, what)) => {
+                writeln!(text, "\ndisagreements: {}. First: detection {index}, {what}", self.disagreements)
+            }
+        };
         text
     }
 }
