@@ -27,7 +27,7 @@ pub struct SmallestScene {
     pub explanations: Vec<Explanation>,
     /// The values that differ, in words; with full hints only.
     pub differs: Option<String>,
-    /// The reference's computation for the most informative pair; with full hints only.
+    /// The reference's computation for the most informative pair, or for the forces; with full hints only.
     pub by_hand: Option<HandComputation>,
     /// The card that a page shows of it.
     pub card: Option<String>,
@@ -35,12 +35,12 @@ pub struct SmallestScene {
     pub card_for_students: Option<String>,
 }
 
-/// The reference's computation for one pair.
+/// The reference's computation for one pair, or for the forces and the integrator.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HandComputation {
     /// The pair, as `detect --pair` takes it.
-    pub pair: String,
-    /// The computation, as `detect` prints it.
+    pub pair: Option<String>,
+    /// The computation: that of a pair is what `detect` prints.
     pub text: String,
 }
 

@@ -14,6 +14,7 @@
 #![forbid(unsafe_code)]
 
 pub(crate) mod annotation;
+pub mod by_hand;
 pub mod case;
 pub mod check;
 pub mod describe;

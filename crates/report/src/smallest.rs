@@ -48,10 +48,13 @@ fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
         format!("{program} -s {scene} -d 0 -o small.bin"),
         format!("fosssim-oracle check {scene} small.bin --all"),
     ];
-    all.extend(small.by_hand.iter().map(|by_hand| {
-        let pair = &by_hand.pair;
-        format!("fosssim-oracle detect --scene {scene} --trace small.bin --step 1 --pair {pair}")
-    }));
+    all.extend(
+        small
+            .by_hand
+            .iter()
+            .filter_map(|by_hand| by_hand.pair.as_ref())
+            .map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin --step 1 --pair {pair}")),
+    );
     if file.is_none() {
         all.insert(0, format!("fosssim-oracle shrink {program} --output {scene}"));
     }
@@ -79,7 +82,7 @@ view! {
         },
         /// Likely mistakes, the cause first.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
-        /// The computation of the most informative pair, as `detect` prints it; null if hints hide it.
+        /// The computation by hand, of the most informative pair or of the forces; null if hints hide it.
         by_hand: Option<String> = small.by_hand.as_ref().map(|by_hand| by_hand.text.clone()),
     }
 }

@@ -13,6 +13,7 @@ use crate::{
     evidence::{InspectedPair, inspect},
     judge::{Rules, overlap::OverlapStudy, replay},
     report::{
+        by_hand::first_step,
         case::Case,
         check::{Check, StepChoice, WrongSteps},
         describe::pair_key,
@@ -181,8 +182,13 @@ fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestSc
     if drawing.hints == Hints::Full {
         let (differs, pair) = differences(small);
         told.differs = differs;
-        told.by_hand =
-            pair.and_then(|pair| Some(HandComputation { pair: pair_key(pair), text: by_hand(small, pair)? }));
+        let of_pair = |pair| Some(HandComputation { pair: Some(pair_key(pair)), text: by_hand(small, pair)? });
+        let forces = || Some(HandComputation { pair: None, text: first_step(scene, "small.xml")? });
+        told.by_hand = match pair {
+            Some(pair) => of_pair(pair),
+            None if scene.steps() > 1 => None,
+            None => forces().or_else(|| of_pair(pairs(scene).iter().next()?)),
+        };
     }
     (told, card)
 }
@@ -202,8 +208,7 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
     case.explanations.splice(0..0, cut(hints, vec![lead]));
 }
 
-/// Returns the values that differ, and the most informative pair: that of the first finding, else one that collides,
-/// else the first.
+/// Returns the values that differ, and the pair of the first finding.
 fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
@@ -225,7 +230,7 @@ fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
     };
     let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
     let first = findings.and_then(|findings| findings.first_divergence).and_then(|first| first.detail.pair());
-    (check.steps_text(Style::Plain), first.or_else(|| pairs(scene).iter().next()))
+    (check.steps_text(Style::Plain), first)
 }
 
 /// Returns the reference's computation for a pair in a scene of one step, next to the trace's numbers.

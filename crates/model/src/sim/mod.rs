@@ -23,7 +23,7 @@ mod state;
 mod step_error;
 
 pub use collision::{PairMotion, PointMotion, formulas};
-pub use forces::{PenaltyPairs, PenaltyTerms, SweepOrder};
+pub use forces::{PenaltyPairs, PenaltyTerms, SweepOrder, gradients};
 pub use observer::{
     Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steer, Steering, Time, WantedPairs, Zone,
 };

@@ -107,6 +107,21 @@ impl Forces {
     }
 }
 
+/// Returns the gradient (2N) of each force of a scene at positions `x` and velocities `v`, in acting order; that of the
+/// penalty force, if there is one, comes last.
+#[must_use]
+pub fn gradients(scene: &Scene, x: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
+    let (bodies, Forces { list, penalty }) = (Bodies::new(scene), Forces::new(scene));
+    let alone = list.into_iter().map(|force| Forces { list: vec![force], penalty: None });
+    let last = penalty.map(|penalty| Forces { list: Vec::new(), penalty: Some(penalty) });
+    let gradient = |mut forces: Forces| {
+        let mut gradient = vec![0.0; x.len()];
+        forces.fill_gradient(&bodies, x, v, &mut gradient);
+        gradient
+    };
+    alone.chain(last).map(gradient).collect()
+}
+
 /// Computes `array[index] += v`.
 #[inline]
 fn add(array: &mut [f64], index: usize, v: Vec2) {
