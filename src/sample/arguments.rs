@@ -1,6 +1,9 @@
 //! The command line: the course's arguments, and additional ones.
 use super::pin;
-use crate::student::{self, Mistake, Student, all_rows};
+use crate::{
+    student::{self, Mistake, Student, all_rows},
+    suite::near,
+};
 use clap::Parser;
 use std::{
     ffi::OsString,
@@ -88,24 +91,14 @@ fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>)
 }
 
 fn mistake(source: &str, id: &str) -> Result<Mistake, String> {
-    let unknown = || format!("{source} asks for the mistake '{id}', which does not exist{}", hint(id));
+    let meant = || near::meant(id, all_rows().map(|row| row.id));
+    let unknown = || format!("{source} asks for the mistake '{id}', which --list does not have{}", meant());
     student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }
 
 fn mistake_of_name(program: Option<&Path>) -> Option<String> {
     let name = program?.file_name()?.to_str()?;
     name.strip_prefix(NAME_PREFIX).map(str::to_owned)
-}
-
-/// Returns the ids that a misspelt one may have meant.
-fn hint(id: &str) -> String {
-    let alike: Vec<&str> =
-        all_rows().map(|row| row.id).filter(|known| known.contains(id) || id.contains(known)).take(5).collect();
-    if alike.is_empty() {
-        "; fosssim-sample --list shows all".to_owned()
-    } else {
-        format!("; did you mean {}?", alike.join(", "))
-    }
 }
 
 #[cfg(test)]

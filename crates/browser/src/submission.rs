@@ -57,7 +57,10 @@ impl DroppedSubmission {
             (None, Some((text, dropped))) => {
                 (std::str::from_utf8(text).map_err(|_| "the suite is not UTF-8")?, dropped)
             }
-            _ => (plan::built_in(&name).ok_or_else(|| format!("there is no suite {name}"))?, &[][..]),
+            _ => (
+                plan::built_in(&name).ok_or_else(|| format!("there is no suite {name}{}", plan::meant(&name)))?,
+                &[][..],
+            ),
         };
         let mut files = |pattern: &str| matching(pattern, &asked.scenes, dropped);
         let plan = plan::load_by(text, &mut files).map_err(|error| {

@@ -17,6 +17,12 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
     near.min_by_key(|(slips, _)| *slips).map(|(_, candidate)| candidate)
 }
 
+/// Returns the end of a message about a word that is not known: the known one that was probably meant, if one is near.
+#[must_use]
+pub fn meant<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> String {
+    closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
+}
+
 /// Returns the names nearest to a typed word, at most `most` of them, the nearest first. A name is compared as a whole
 /// and by its last part, because its group may be mistyped or left out.
 #[must_use]

@@ -1,5 +1,5 @@
 //! A suite with its scenes looked up: the scenes that a grading really runs.
-pub use super::assignments::{default_name, names as built_in_names};
+pub use super::assignments::{default_name, meant, names as built_in_names};
 use super::{
     assignments,
     config::{self, Group, Hints, Marking, Pattern, Position, Suite, SuiteError},

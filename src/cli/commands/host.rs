@@ -12,7 +12,7 @@ use crate::{
     sample::pin,
     sandbox::{self, Backend, Supervisor, selftest},
     student::{self, RowKind},
-    suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, plan},
+    suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, near, plan},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -62,7 +62,8 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     for id in mistake.split(',') {
         // A variant is right: a program that makes it would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
-            bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them");
+            let meant = near::meant(id, student::all_rows().map(|row| row.id));
+            bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");
         }
     }
     if let Some(program) = &arguments.program {
@@ -136,7 +137,9 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let mut backend = backend(false)?;
     for name in &arguments.without {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
-        backend = backend.without(layer.with_context(|| format!("doctor shows no layer {name}"))?)?;
+        let names = sandbox::Layer::ALL.into_iter().map(sandbox::Layer::name);
+        let unknown = || format!("doctor shows no layer {name}{}", near::meant(name, names));
+        backend = backend.without(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
     // The programs run as another user when this is root, who has to reach them.

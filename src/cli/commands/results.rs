@@ -4,7 +4,7 @@ use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{Place, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
-    suite::{Grade, PassedOver, catch_panic},
+    suite::{Grade, PassedOver, catch_panic, near},
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -39,7 +39,7 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
         };
         let Some(format) = Format::from_name(name) else {
             let known: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
-            bail!("no format {name}; there are {}", known.join(", "));
+            bail!("no format {name}; there are {}{}", known.join(", "), near::meant(name, known.iter().copied()));
         };
         reports.push(Report { format, name: name.to_owned(), file });
     }

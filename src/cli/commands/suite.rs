@@ -42,7 +42,7 @@ fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::template(&name).with_context(|| {
         let known: Vec<_> = plan::built_in_names().collect();
-        format!("no suite {name} comes with the program; there are {}", known.join(", "))
+        format!("no suite {name} comes with the program; there are {}{}", known.join(", "), plan::meant(&name))
     })
 }
 

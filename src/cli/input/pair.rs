@@ -87,7 +87,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
 fn kind_of(word: &str) -> Result<PairKind> {
     PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
-        let meant = near::closest(word, names).map(|name| format!("; did you mean {name}?")).unwrap_or_default();
+        let meant = near::meant(word, names);
         format!(
             "`{word}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
              half-plane){meant}"

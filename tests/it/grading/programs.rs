@@ -26,6 +26,11 @@ fn what_can_not_be_run_is_explained() {
         ("holds no submission", vec!["grade", "empty"]),
         ("no suite t9m9: it is neither a file nor one of", vec!["grade", "text", "--suite", "t9m9"]),
         ("no suite nowhere.toml", vec!["grade", "text", "--suite", "nowhere.toml"]),
+        ("did you mean t2m2?", vec!["grade", "text", "--suite", "tm2m2"]),
+        ("did you mean t1m3?", vec!["suite", "init", "t1m3x"]),
+        ("did you mean gradescope?", vec!["grade", "text", "--format", "gradscope"]),
+        ("did you mean pe-square-no-eh?", vec!["demo", "--mistake", "pe-square-no-he"]),
+        ("did you mean namespaces?", vec!["selftest", "--without", "namespace"]),
         ("no format yaml", vec!["grade", "text", "--format", "yaml"]),
         ("only one format can go to standard output", vec!["grade", "text", "--format", "text", "--format", "csv"]),
     ] {

@@ -1,5 +1,6 @@
 //! The parts of grading that are bound to an assignment of the course: the versions of its suite, and the template of
 //! suites. One folder each.
+use super::near;
 use fosssim_model::assignments::{Assignment, Definition};
 
 #[path = "t2m3/timing.rs"]
@@ -92,6 +93,13 @@ pub fn names() -> impl Iterator<Item = String> {
     Assignment::default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
+}
+
+/// Returns the end of a message about a suite that does not come with the program, as [`near::meant`].
+#[must_use]
+pub fn meant(name: &str) -> String {
+    let known: Vec<String> = names().collect();
+    near::meant(name, known.iter().filter_map(|known| known.split('@').next()))
 }
 
 /// Returns the name of the suite that is meant where none is named.

@@ -1,5 +1,5 @@
 //! Suites and scenes that are files.
-use super::{MatchingScenes, Plan, built_in, built_in_names, load_by};
+use super::{MatchingScenes, Plan, built_in, built_in_names, load_by, meant};
 use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_model::scene;
@@ -46,14 +46,12 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     let loaded = match built_in(name) {
         Some(text) => load(text, Path::new(".")),
         None => {
-            let text = read_text(path, LARGEST_SUITE).map_err(|why| {
-                let known = || built_in_names().collect::<Vec<_>>().join(", ");
-                match why.kind() {
-                    io::ErrorKind::NotFound => {
-                        format!("no suite {name}: it is neither a file nor one of {}", known()).into()
-                    }
-                    _ => FindError { words: format!("cannot read the suite {name}"), why: Some(why) },
+            let text = read_text(path, LARGEST_SUITE).map_err(|why| match why.kind() {
+                io::ErrorKind::NotFound => {
+                    let known = built_in_names().collect::<Vec<_>>().join(", ");
+                    format!("no suite {name}: it is neither a file nor one of {known}{}", meant(name)).into()
                 }
+                _ => FindError { words: format!("cannot read the suite {name}"), why: Some(why) },
             })?;
             if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
                 let advice = "a group of a suite lists it in its `scenes`";

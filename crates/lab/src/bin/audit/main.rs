@@ -150,7 +150,7 @@ impl AuditTally {
         for (decisions, name) in self.decisions.iter().zip(PAIRS) {
             decisions.report(name, &mut text);
         }
-        // What the exit code says comes last.
+        // The exit code's reason comes last.
         let _ = match &self.first {
             None => {
                 writeln!(text, "\ndisagreements: 0. Where a certificate excludes an impact, the search finds none.")
