@@ -1,11 +1,13 @@
 //! The formulas of detection over a chosen kind of number: with fused multiply-adds, as a compiler makes them that may
 //! contract and reorder, or in twice the usual precision and rounded once at the end.
 //!
-//! The mathematics is that of collisions.md 2, the course's cubic coefficient of the particle-edge approach included.
+//! The mathematics is that of collisions.md 2 in the tables of `formulas`, the course's cubic coefficient of the
+//! particle-edge approach included.
 use std::ops::{Add, Div, Mul, Sub};
 
 use fosssim_num::vector::Vec2;
 
+use crate::assignments::t2m2::{Subject, formulas::readings};
 use crate::encounter::MovingBody;
 
 /// The numbers of a program.
@@ -52,19 +54,6 @@ fn plus<N: Number>(v: Vector<N>, s: N, w: Vector<N>) -> Vector<N> {
     [s.multiply_add(w[0], v[0]), s.multiply_add(w[1], v[1])]
 }
 
-fn negative<N: Number>(a: N) -> N {
-    N::from(0.0) - a
-}
-
-/// Returns the sum of products, each with a small whole factor, from left to right.
-fn sum<N: Number>(terms: &[(f64, N, N)]) -> N {
-    terms.iter().fold(N::from(0.0), |sum, &(factor, a, b)| (N::from(factor) * a).multiply_add(b, sum))
-}
-
-fn rounded<N: Number>(list: &[N]) -> Vec<f64> {
-    list.iter().map(|number| number.rounded()).collect()
-}
-
 fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
     Vec2::new(v[0].rounded(), v[1].rounded())
 }
@@ -74,26 +63,35 @@ fn at<N: Number>(body: &MovingBody, t: f64) -> Vector<N> {
     plus(vector(body.start), N::from(t), vector(body.displacement))
 }
 
+/// Returns a polynomial, highest power first, from the letters of its first formula.
+fn evaluate<N: Number>(subject: Subject, letters: &[N]) -> Vec<f64> {
+    let formula = &readings(subject)[0];
+    let mut sums = vec![N::from(0.0); formula.degree + 1];
+    for term in formula.terms {
+        let [others @ .., last] = term.letters else { continue };
+        let product = others.iter().fold(N::from(term.weight), |product, &letter| product * letters[letter]);
+        let sum = &mut sums[formula.degree - term.power];
+        *sum = product.multiply_add(letters[*last], *sum);
+    }
+    sums.iter().map(|sum| sum.rounded()).collect()
+}
+
 /// Returns the overlap and approach of two particles.
 pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
     let x: Vector<N> = minus(vector(two.start), vector(one.start));
     let d: Vector<N> = minus(vector(two.displacement), vector(one.displacement));
     let reach = N::from(one.radius) + N::from(two.radius);
-    let square = dot(d, d);
-    let along = dot(x, d);
-    let overlap = [negative(square), N::from(-2.0) * along, reach.multiply_add(reach, negative(dot(x, x)))];
-    vec![rounded(&overlap), rounded(&[negative(square), negative(along)])]
+    let letters = [dot(d, d), dot(x, d), dot(x, x), reach * reach];
+    vec![evaluate(Subject::ParticleOverlap, &letters), evaluate(Subject::ParticleApproach, &letters)]
 }
 
 /// Returns the overlap and approach of a particle and a half-plane.
 pub fn particle_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let q: Vector<N> = vector(normal);
-    let s = dot(vector(one.displacement), q);
-    let w = dot(minus(vector(point), vector(one.start)), q);
+    let offset = minus(vector(point), vector(one.start));
     let radius = N::from(one.radius);
-    let reach = radius * radius * dot(q, q);
-    let overlap = [negative(s) * s, N::from(2.0) * w * s, negative(w).multiply_add(w, reach)];
-    vec![rounded(&overlap), rounded(&[negative(s) * s, w * s])]
+    let letters = [dot(vector(one.displacement), q), dot(offset, q), dot(q, q), radius * radius];
+    vec![evaluate(Subject::HalfPlaneOverlap, &letters), evaluate(Subject::HalfPlaneApproach, &letters)]
 }
 
 /// Returns overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
@@ -104,65 +102,16 @@ pub fn particle_edge<N: Number>(bodies: &[MovingBody; 3], edge_radius: f64) -> V
     let (d12, d32) = (between(one.displacement, two.displacement), between(three.displacement, two.displacement));
     let (x13, x23) = (between(one.start, three.start), between(two.start, three.start));
     let (d13, d23) = (between(one.displacement, three.displacement), between(two.displacement, three.displacement));
-    let along = [dot(d12, d32), dot(x12, d32) + dot(d12, x32), dot(x12, x32)];
-    let back = [dot(d13, d23), dot(d13, x23) + dot(x13, d23), dot(x13, x23)];
-    let beside = [dot(d12, d12), dot(d12, x12), dot(x12, x12)];
-    let edge = [dot(d32, d32), dot(d32, x32), dot(x32, x32)];
+    let [f, g, h] = [dot(x12, x32), dot(x12, d32) + dot(d12, x32), dot(d12, d32)];
+    let [xx, dx, dd] = [dot(x12, x12), dot(d12, x12), dot(d12, d12)];
+    let [a, b, c] = [dot(x32, x32), dot(x32, d32), dot(d32, d32)];
     let reach = N::from(one.radius) + N::from(edge_radius);
-    let overlap = quartic(along, beside, edge, reach * reach);
-    vec![rounded(&overlap), rounded(&along), rounded(&back), rounded(&quintic(&x12, &x32, &d12, &d32))]
-}
-
-/// Returns `(x12.x32)^2 - |x12|^2 |x32|^2 + S |x32|^2`, each factor as a quadratic in t (`beside` and `edge` with half
-/// of their linear coefficients).
-fn quartic<N: Number>([c, b, a]: [N; 3], [f, e, d]: [N; 3], [i, h, g]: [N; 3], s: N) -> [N; 5] {
-    [
-        sum(&[(1.0, c, c), (-1.0, f, i)]),
-        sum(&[(2.0, b, c), (-2.0, e, i), (-2.0, f, h)]),
-        sum(&[(2.0, c, a), (1.0, b, b), (-1.0, d, i), (-1.0, f, g), (-4.0, e, h), (1.0, s, i)]),
-        sum(&[(2.0, a, b), (-2.0, d, h), (-2.0, e, g), (2.0, s, h)]),
-        sum(&[(1.0, a, a), (-1.0, d, g), (1.0, s, g)]),
-    ]
-}
-
-/// Returns the course's quintic, term by term (collisions.md 2).
-fn quintic<N: Number>(x12: &Vector<N>, x32: &Vector<N>, d12: &Vector<N>, d32: &Vector<N>) -> [N; 6] {
-    let [x21, d21] = [x12, d12].map(|v| v.map(negative));
-    let (a, b, c) = (dot(*x32, *x32), dot(*x32, *d32), dot(*d32, *d32));
-    let (d, e) = (dot(d21, d21), dot(d21, x21));
-    let (f, g, h) = (dot(*x12, *x32), dot(*x12, *d32) + dot(*d12, *x32), dot(*d12, *d32));
-    let (i, j) = (dot(*d32, x21) + dot(d21, *x32), dot(*d32, d21));
-    let k = a * f;
-    let l = sum(&[(1.0, a, g), (2.0, b, f)]);
-    let m = sum(&[(1.0, a, h), (2.0, b, g), (1.0, c, f)]);
-    let n = sum(&[(1.0, c, g), (2.0, b, h)]);
-    let o = c * h;
-    let (p, q) = (b, c);
-    [
-        sum(&[(-1.0, h * h, q), (-1.0, c * c, d), (-2.0, o, j)]),
-        sum(&[(-1.0, h * h, p), (-2.0, g * h, q), (-4.0, b * c, d), (-1.0, c * c, e), (-1.0, o, i), (-2.0, n, j)]),
-        sum(&[
-            (-2.0, g * h, p),
-            (-2.0, f * g, q),
-            (-1.0, g * g, q),
-            (-2.0, a * c, d),
-            (-4.0, b * b, d),
-            (-4.0, b * c, e),
-            (-1.0, n, i),
-            (-2.0, m, j),
-        ]),
-        sum(&[
-            (-2.0, f * h, p),
-            (-1.0, g * g, p),
-            (-2.0, f * g, q),
-            (-4.0, a * b, d),
-            (-2.0, a * c, e),
-            (-4.0, b * b, e),
-            (-1.0, m, i),
-            (-2.0, l, j),
-        ]),
-        sum(&[(-2.0, f * g, p), (-1.0, f * f, q), (-1.0, a * a, d), (-4.0, a * b, e), (-1.0, l, i), (-2.0, k, j)]),
-        sum(&[(-1.0, f * f, p), (-1.0, a * a, e), (-1.0, k, i)]),
+    let nothing = N::from(0.0);
+    vec![
+        evaluate(Subject::EdgeOverlap, &[f, g, h, xx, dx, dd, a, b, c, reach * reach]),
+        evaluate(Subject::AlphaLow, &[f, dot(x12, d32), dot(d12, x32), h]),
+        evaluate(Subject::AlphaHigh, &[dot(x13, x23), dot(x13, d23), dot(d13, x23), dot(d13, d23)]),
+        evaluate(Subject::EdgeApproach, &[a, b, c, dd, dx, f, g, h, nothing - g, nothing - h]),
     ]
 }
 

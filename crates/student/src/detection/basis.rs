@@ -67,8 +67,13 @@ pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<V
     vec![interpolate(2, |t| reach - away(t) * away(t)), interpolate(1, |t| speed * away(t))]
 }
 
+/// Returns the overlap of a particle and an edge, from values.
+pub fn overlap_from_values(bodies: &[MovingBody; 3], square: f64) -> Vec<f64> {
+    interpolate(4, |t| overlap(bodies, square, t))
+}
+
 /// Returns the overlap of a particle and an edge at one time.
-pub fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 {
+fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 {
     let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
     let cross = along.x * beside.y - along.y * beside.x;
     square * along.dot(&along) - cross * cross
@@ -77,7 +82,7 @@ pub fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 
 /// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
 pub fn particle_edge(bodies @ [one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
     [
-        interpolate(4, |t| overlap(bodies, square, t)),
+        overlap_from_values(bodies, square),
         interpolate(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),
         interpolate(2, |t| (one.at(t) - three.at(t)).dot(&(two.at(t) - three.at(t)))),
     ]

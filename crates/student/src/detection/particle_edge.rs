@@ -40,7 +40,7 @@ pub fn polynomials(student: Student, bodies: &[MovingBody; 3], edge_radius: f64)
     let overlap = match mistake {
         Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<WideNumber>(bodies, edge_radius).swap_remove(0),
         Some(Mistake::FactorizedQuartic | Mistake::FactorizedAll) => factorized::quartic(bodies, square),
-        Some(Mistake::InterpolatedQuartic) => interpolate(bodies, square),
+        Some(Mistake::InterpolatedQuartic) => basis::overlap_from_values(bodies, square),
         Some(Mistake::RearrangedParticleEdge) => rearrange(dots, square),
         _ => quartic(student, dots, square),
     };
@@ -166,19 +166,6 @@ fn rearrange([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
         2.0 * ((a * b - e * g) + (s - d) * h),
         (s - d) * g + a * a,
     ]
-}
-
-/// Returns the quartic from its values at five times.
-fn interpolate(bodies: &[MovingBody; 3], s: f64) -> Vec<f64> {
-    let value = |t: f64| basis::overlap(bodies, s, t);
-    let (low2, low1, middle, high1, high2) = (value(-2.0), value(-1.0), value(0.0), value(1.0), value(2.0));
-    let even1 = (high1 + low1) / 2.0 - middle;
-    let even2 = (high2 + low2) / 2.0 - middle;
-    let odd1 = (high1 - low1) / 2.0;
-    let odd2 = (high2 - low2) / 2.0;
-    let t4 = (even2 - 4.0 * even1) / 12.0;
-    let t3 = (odd2 - 2.0 * odd1) / 6.0;
-    vec![t4, t3, even1 - t4, odd1 - t3, middle]
 }
 
 fn alpha_above_zero(student: Student, bodies: &[MovingBody; 3], dots: DotProducts) -> Vec<f64> {
