@@ -4,6 +4,8 @@
 //! pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar Conference, 1993). The
 //! result is a proposal: the caller checks it against every sample.
 
+use nalgebra::{DMatrix, DVector};
+
 /// A proposal: column indices, ascending, and their weights.
 pub(super) type Support = Vec<(usize, f64)>;
 
@@ -129,39 +131,15 @@ impl DesignMatrix {
 
     /// Solves the normal equations of unit columns by Cholesky's method; `None` if they are close to dependent.
     fn weights(&self, chosen: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
-        let size = chosen.len();
-        let count = self.indices.len();
-        let mut lower = vec![0.0; size * size];
-        for row in 0..size {
-            for column in 0..=row {
-                let mut value = self.gram[chosen[row] * count + chosen[column]];
-                for inner in 0..column {
-                    value -= lower[row * size + inner] * lower[column * size + inner];
-                }
-                lower[row * size + column] = if row == column {
-                    if !(value > INDEPENDENT) {
-                        return None;
-                    }
-                    value.sqrt()
-                } else {
-                    value / lower[column * size + column]
-                };
-            }
+        let (size, count) = (chosen.len(), self.indices.len());
+        let gram = DMatrix::from_fn(size, size, |row, column| self.gram[chosen[row] * count + chosen[column]]);
+        let factor = gram.cholesky()?;
+        let is_dependent = |diagonal: f64| !(diagonal * diagonal > INDEPENDENT);
+        if factor.l_dirty().diagonal().iter().any(|&diagonal| is_dependent(diagonal)) {
+            return None;
         }
-        let mut weights: Vec<f64> = chosen.iter().map(|&column| fits[column]).collect();
-        for row in 0..size {
-            for column in 0..row {
-                weights[row] -= lower[row * size + column] * weights[column];
-            }
-            weights[row] /= lower[row * size + row];
-        }
-        for row in (0..size).rev() {
-            for below in row + 1..size {
-                weights[row] -= lower[below * size + row] * weights[below];
-            }
-            weights[row] /= lower[row * size + row];
-        }
-        Some(weights)
+        let fits = DVector::from_iterator(size, chosen.iter().map(|&column| fits[column]));
+        Some(factor.solve(&fits).as_slice().to_vec())
     }
 }
 
