@@ -7,12 +7,14 @@ fosssim_num::closed_set! {
     #[serde(rename_all = "kebab-case")]
     pub enum PairKind {
         /// Two particles (0).
-        ParticleParticle = "particle-particle",
+        ParticleParticle = "particle-particle", "pp";
         /// A particle and an edge (1).
-        ParticleEdge = "particle-edge",
+        ParticleEdge = "particle-edge", "pe";
         /// A particle and a half-plane (2).
-        ParticleHalfPlane = "particle-half-plane",
+        ParticleHalfPlane = "particle-half-plane", "ph";
     }
+    /// Returns the kind's name on command lines and in keys: `pe`.
+    short
 }
 
 impl PairKind {
@@ -54,16 +56,6 @@ impl PairKind {
     #[must_use]
     pub fn from_code(code: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
-    }
-
-    /// Returns the kind's name on command lines and in keys: `pe`.
-    #[must_use]
-    pub const fn short(self) -> &'static str {
-        match self {
-            Self::ParticleParticle => "pp",
-            Self::ParticleEdge => "pe",
-            Self::ParticleHalfPlane => "ph",
-        }
     }
 
     /// Returns the kind of the second object: `edge`.

@@ -21,12 +21,16 @@ impl TraitRow {
     }
 }
 
-/// The axis that a trait is about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum TraitAxis {
-    X,
-    Y,
-    Either,
+fosssim_num::closed_set! {
+    /// The axis that a trait is about.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    enum TraitAxis {
+        X = "horizontally", "x";
+        Y = "vertically", "y";
+        Either = "horizontally or vertically", "x or y";
+    }
+    /// Returns the axis as a letter of formulas.
+    letter
 }
 
 /// A row with its axis and its number.
@@ -48,21 +52,11 @@ impl Variant {
     }
 
     pub fn what(&self) -> String {
-        let name = match self.axis {
-            TraitAxis::X => "horizontally",
-            TraitAxis::Y => "vertically",
-            TraitAxis::Either => "horizontally or vertically",
-        };
-        self.row.what.replace("{axis}", name)
+        self.row.what.replace("{axis}", self.axis.name())
     }
 
     pub fn exact(&self) -> String {
-        let name = match self.axis {
-            TraitAxis::X => "x",
-            TraitAxis::Y => "y",
-            TraitAxis::Either => "x or y",
-        };
-        self.row.exact.replace("{axis}", name).replace("{n}", &self.n.to_string())
+        self.row.exact.replace("{axis}", self.axis.letter()).replace("{n}", &self.n.to_string())
     }
 }
 
