@@ -104,7 +104,7 @@ pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl
 /// Prints to standard output. Nobody listening any more is no error: the verdict is in the exit code.
 ///
 /// # Errors
-/// Anything else, such as a full disk.
+/// Another fault, such as a full disk.
 pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
     if is_quiet() {
         return Ok(());

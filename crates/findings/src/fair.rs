@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum FairVerdict {
     /// All rules are met.
     Accepted,
-    /// Something is.
+    /// A rule is not met.
     Rejected,
     /// Undecided: judging was given up before its end, and nothing was wrong so far.
     #[default]

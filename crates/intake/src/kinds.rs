@@ -7,7 +7,7 @@ pub enum FileKind {
     Program,
     /// An archive that is unpacked.
     Archive(ArchiveKind),
-    /// Anything else.
+    /// A file of another kind.
     Other,
 }
 

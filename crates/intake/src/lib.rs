@@ -72,7 +72,7 @@ pub enum ArchiveError {
     /// A name leads out of the folder, or is none.
     #[error("the archive has a file with a forbidden name: {0}")]
     Name(String),
-    /// Something that is neither file nor folder.
+    /// An entry that is neither file nor folder.
     #[error("the archive has {0}, which is neither a file nor a folder; links and devices are not allowed")]
     Kind(String),
     /// Two files of one name.

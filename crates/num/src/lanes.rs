@@ -115,7 +115,7 @@ impl Instructions {
     }
 }
 
-/// Something to be done in lanes.
+/// Work that is done in lanes.
 pub trait Work {
     /// The type of the result.
     type Output;

@@ -17,7 +17,7 @@ pub struct Size {
 /// A size that is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BadSize {
-    /// Not two numbers.
+    /// The text is not two numbers.
     #[error("`{0}` is no size; write WIDTHxHEIGHT as in 640x480")]
     Unreadable(String),
     /// Too small or too large.

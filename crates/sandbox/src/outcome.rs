@@ -15,7 +15,7 @@ pub struct CapturedOutput {
     pub truncated: bool,
 }
 
-/// Everything about one run.
+/// The outcome of one run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunOutcome {
     /// The way it ended.

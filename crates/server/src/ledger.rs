@@ -210,7 +210,7 @@ async fn write_result(
     Ok(about)
 }
 
-/// The reason why another result is to count.
+/// The reason why another result counts.
 #[derive(Debug, Clone, Copy)]
 pub struct GradeChange<'a> {
     /// The submission with the grade.

@@ -17,7 +17,7 @@ pub struct Problem {
     pub detail: String,
     /// The advice about it.
     pub remedy: String,
-    /// In how many seconds it may work, where that is known.
+    /// The seconds after which it may work, if that is known.
     #[serde(skip)]
     pub wait: Option<u64>,
 }
@@ -64,7 +64,7 @@ problems! {
     cross_site(): 403, "cross-site", "Sent from another site",
         "the request came from another site, or does not say where it came from",
         "send it from this site's own pages, or with a token instead of a cookie";
-    /// Somebody can't come from a learning platform so.
+    /// A sign-in from a learning platform is not possible.
     refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
@@ -84,7 +84,7 @@ problems! {
     removed(): 410, "removed", "No longer kept",
         "the upload and its reports were removed; the grade and its history are kept",
         "ask the course's staff about the grade";
-    /// Something in the request is not as it must be.
+    /// A part of the request is not as it must be.
     invalid(detail: impl Into<String>): 400, "invalid", "Not understood",
         detail,
         "correct it and send it again";

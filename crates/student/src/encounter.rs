@@ -1,7 +1,7 @@
 //! The two objects of a pair on their way through a step.
 use fosssim_num::vector::Vec2;
 
-/// Something round on its way through the step: it moves from `start` by `displacement`, evenly.
+/// A round body on its way through the step: it moves from `start` by `displacement`, evenly.
 #[derive(Clone, Copy)]
 pub struct MovingBody {
     /// The position of its center at the start of the step.

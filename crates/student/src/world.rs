@@ -13,7 +13,7 @@ use super::{
     objects::{Contact, Object, Pair, State},
 };
 
-/// Everything that stays constant during a run. Programs of many students share a scene, and none holds a list of its
+/// The data that stay constant during a run. Programs of many students share a scene, and none holds a list of its
 /// pairs, of which a large scene has millions.
 pub struct World {
     /// The scene as loaded.
@@ -31,7 +31,7 @@ pub struct StepLog<'a> {
     pub impulses: Vec<Contact>,
     /// The polynomials handed to the root finder, in order.
     pub polynomials: Vec<Polynomial>,
-    /// Asked about each polynomial, by its index in the log, before its roots are searched.
+    /// The guard that sees each polynomial, with its index in the log, before its roots are searched.
     pub guard: Option<Guard<'a>>,
     /// The steps of root searches that took longer than usual.
     pub long_searches: u64,

@@ -15,7 +15,7 @@ pub const REQUIRE: &str = "FOSSSIM_REQUIRE";
 /// The file that the list is kept in. Without it there is one per run of `cargo test`.
 pub const LIST: &str = "FOSSSIM_SKIPS";
 
-/// Something that not every machine has.
+/// A need that not every machine meets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Need {
     /// The ground-truth corpus next to the checkout.

@@ -38,7 +38,7 @@ pub enum PolynomialDetail {
         subject: Option<Subject>,
         /// The coefficient's power of t.
         power: usize,
-        /// In how many samples.
+        /// The number of samples.
         count: usize,
         /// The number of all.
         of: usize,
@@ -76,7 +76,7 @@ pub enum PolynomialDetail {
     },
     /// The exact form of the misunderstanding with this key.
     Special(Cow<'static, str>),
-    /// Something else is used for a letter of a formula.
+    /// Another quantity is used for a letter of a formula.
     StandsFor {
         /// The formula.
         reading: Reading,
@@ -186,12 +186,12 @@ pub enum StageDetail {
         amount: Amount,
         /// Whether across the contact vector, too.
         across: bool,
-        /// In how many of them it is wrong.
+        /// The number of them in which it is wrong.
         wrong: usize,
         /// The number of all.
         of: usize,
     },
-    /// The number of zones of which it is true.
+    /// The number of zones to which it applies.
     OfZones {
         /// The number.
         count: usize,

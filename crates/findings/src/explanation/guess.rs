@@ -6,15 +6,15 @@ use std::borrow::Cow;
 /// A guess about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Guess {
-    /// Something about the whole list of coefficients.
+    /// A guess about the whole list of coefficients.
     List(ListGuess),
     /// One input is used instead of another: the exchange of this key, for which the assignment has words.
     Exchange(Cow<'static, str>),
     /// A misunderstanding with a formula of its own, with this key; the assignment has words for it.
     Special(Cow<'static, str>),
-    /// Something about one quantity of the formula.
+    /// A guess about one quantity of the formula.
     Quantity(QuantityGuess),
-    /// Something about the coefficients of some powers of t.
+    /// A guess about the coefficients of some powers of t.
     Coefficients {
         /// The powers of these coefficients, the highest first.
         powers: Vec<usize>,

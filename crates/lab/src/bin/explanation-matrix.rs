@@ -26,7 +26,7 @@ enum Outcome {
     First,
     /// The mistake is among those that this trace can't distinguish from the first one.
     Among(String),
-    /// Something else is named.
+    /// Another mistake is named.
     Other(String),
     /// No mistake is named, though the parity rules find wrong steps.
     Nothing(u64),

@@ -3,7 +3,7 @@ use super::model::{Collision, CollisionDetection, Scene};
 use crate::assignments::{Assignment, CollisionType, ForceKind, Integrator};
 use std::fmt;
 
-/// Something of a scene that is unknown to the programs of an assignment.
+/// A part of a scene that is unknown to the programs of an assignment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnknownFeature {
     /// The assignment.

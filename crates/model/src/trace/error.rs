@@ -6,7 +6,7 @@ use super::layout::Layout;
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
-/// Something wrong with a trace, and its place.
+/// A fault of a trace, and its place.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("byte {offset}, {}: {what}", record_name(*.frame, *.step))]
 pub struct TraceError {

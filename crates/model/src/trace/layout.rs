@@ -1,7 +1,7 @@
 //! Which blocks a record of a given scene has, and how many records there are.
 use crate::{assignments::ImpulseList, scene::Scene};
 
-/// Everything about a trace's shape that the scene decides (trace-format.md 1, 2).
+/// The shape of a trace, which the scene decides (trace-format.md 1, 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Layout {
     /// Number of particles N.

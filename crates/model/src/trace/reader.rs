@@ -163,7 +163,7 @@ impl<R: Read> Reader<R> {
         match (source.drain(TRAILING_LIMIT), source.error()) {
             (_, Some(what)) => Err(TraceError::new(self.layout, record, source.offset(), what)),
             (None, None) => {
-                // The place is the end of the last record: there may be none that could come next.
+                // The place is the end of the last record, because there may be no next one.
                 let what = Malformation::Endless { limit: TRAILING_LIMIT };
                 Err(TraceError::new(self.layout, record.saturating_sub(1), offset, what))
             }

@@ -189,7 +189,7 @@ enum Sign {
     Positive,
     /// No coefficient is clearly more than rounding.
     Noise,
-    /// Anything else; halving helps.
+    /// The signs are mixed; halving helps.
     Mixed,
 }
 

@@ -158,7 +158,7 @@ fn missing(name: &str) -> SceneResult {
     SceneResult::without_run(name, 100, Verdict::NotRun, Reason::Stopped)
 }
 
-/// Returns the grader failed.
+/// Returns the grade after a failure of the grader.
 pub(crate) fn fault() -> Grade {
     grade(
         "bob",

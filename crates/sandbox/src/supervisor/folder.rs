@@ -22,9 +22,9 @@ use crate::{
     sys::{self, OFlags},
 };
 
-/// Nobody nests folders deeper than this by accident.
+/// The depth beyond which no user nests folders by accident.
 const DEEPEST: u32 = 32;
-/// Blocks that `stat` counts in.
+/// The size of the blocks in which `stat` counts.
 pub(super) const BLOCK: u64 = 512;
 
 /// The contents of a folder, counted.

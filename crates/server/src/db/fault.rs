@@ -10,7 +10,7 @@ pub enum DbError {
     /// Another transaction was in the way: the same may succeed a moment later.
     #[error("the database is busy: {0}")]
     Busy(String),
-    /// Something like it is there already; the statement's author knows what.
+    /// A row like it exists already; the statement's author knows which.
     #[error("it exists already: {0}")]
     Conflict(String),
     /// A statement is wrong, or a value is not as expected.

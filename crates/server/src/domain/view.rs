@@ -50,7 +50,7 @@ pub struct Assignment {
     pub visible: bool,
     /// The rules by which it is graded.
     pub settings: Settings,
-    /// Since when students see groups that the suite hides, in milliseconds since 1970.
+    /// The time since which students see groups that the suite hides, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_at: Option<i64>,
     /// The number of its changes: a change that names an earlier one is rejected.
@@ -90,7 +90,7 @@ pub struct Submission {
     /// The number of jobs that are graded before it, while it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead: Option<i64>,
-    /// In how many seconds its grade may be expected, while it waits and workers are there.
+    /// The seconds after which its grade may be expected, while it waits and there are workers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
     /// The progress of the grading while it runs.
@@ -169,19 +169,19 @@ pub struct History {
     /// The time of the change, in milliseconds since 1970. The full hour while groups that the suite hides are
     /// withheld.
     pub changed_at: i64,
-    /// Why, as students read it.
+    /// The reason, as students read it.
     pub reason: String,
     /// The person who wanted it; `None` for the grader.
     pub by: Option<String>,
-    /// The verdict before.
+    /// The verdict before the change.
     pub old_code: Option<String>,
-    /// The points before.
+    /// The points before the change.
     pub old_points: Option<String>,
-    /// The verdict since.
+    /// The verdict after the change.
     pub new_code: String,
-    /// The points since.
+    /// The points after the change.
     pub new_points: Option<String>,
-    /// The number of the result that counts since.
+    /// The number of the result that counts after the change.
     pub result: i64,
     /// The grader's version.
     pub version: String,
@@ -194,7 +194,7 @@ pub struct History {
     pub task: String,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Event {
     /// The event's number, which only grows.
@@ -239,7 +239,7 @@ pub struct QueueWorker {
     pub running: i64,
     /// The time when it was last seen, in milliseconds since 1970.
     pub seen_at: i64,
-    /// Since when it takes no jobs because it can't grade.
+    /// The time since which it takes no jobs because it can't grade.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_since: Option<i64>,
     /// The number of its faults.

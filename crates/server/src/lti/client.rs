@@ -41,7 +41,7 @@ const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 /// The reason why a platform did not fulfill a request.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
-    /// The platform is away, or has too much to do; a later request may succeed.
+    /// The platform does not answer, or is overloaded; a later request may succeed.
     #[error("it does not answer as it should: {why}")]
     Away {
         /// The platform's message, or what happened.

@@ -41,7 +41,7 @@ pub enum Rejection {
     /// The message comes from an unregistered deployment.
     #[error("deployment {0} is not among those that an administrator named")]
     Deployment(String),
-    /// Something is missing, or not understood.
+    /// A part is missing, or not understood.
     #[error("the message is not understood: {0}")]
     Content(String),
 }

@@ -23,7 +23,7 @@ pub(super) struct Order {
     pub(super) link: i64,
     /// The student.
     pub(super) account: i64,
-    /// Also when the platform got the same before.
+    /// Whether the score is sent even if the platform got the same before.
     #[serde(default)]
     pub(super) again: bool,
 }
@@ -95,7 +95,7 @@ pub(super) struct Parcel {
     pub(super) subject: String,
     /// The column of the grade book, when it is known.
     pub(super) line_item: Option<String>,
-    /// The place where it is otherwise found or made.
+    /// The address at which the column is otherwise found or made.
     pub(super) line_items: Option<String>,
     pub(super) resource: String,
     pub(super) slug: String,
@@ -242,7 +242,7 @@ pub(super) enum ColumnState {
     Known(String),
     /// The caller must have it made; others wait this long.
     Unclaimed,
-    /// Somebody else is at it.
+    /// Another caller makes it.
     Claimed,
 }
 

@@ -46,7 +46,7 @@ impl Lane {
     }
 }
 
-/// The longest that a platform may have us wait.
+/// The longest wait that a platform may request.
 const A_DAY: Duration = Duration::from_secs(86_400);
 
 /// The patience of the queue.

@@ -10,7 +10,7 @@ pub struct Notifier {
     changes: Arc<watch::Sender<u64>>,
 }
 
-/// Somebody who waits for the notifier. Changes between two waits are not missed.
+/// A task that waits for the notifier. Changes between two waits are not missed.
 #[derive(Debug, Clone)]
 pub struct Subscription(watch::Receiver<u64>);
 

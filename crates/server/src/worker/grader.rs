@@ -33,7 +33,7 @@ pub const PROGRESS: &str = "progress";
 /// The reason why there is no verdict. Never the submission's fault.
 #[derive(Debug, Error)]
 pub enum GraderFault {
-    /// Something failed; another try may help.
+    /// The grading failed; another try may help.
     #[error("{0}")]
     Failed(String),
     /// The grading was stopped on request.

@@ -52,7 +52,7 @@ impl<M> RowOf<M> {
         format!("{}: {}", self.place(), self.what)
     }
 
-    /// Returns the kind of pair for which alone the mistake is made.
+    /// Returns the only kind of pair for which the mistake is made.
     #[must_use]
     pub fn kind_of_pair(&self) -> Option<PairKind> {
         PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))

@@ -43,7 +43,7 @@ pub(super) struct Ffmpeg {
     pipe: Option<ChildStdin>,
     words: Option<JoinHandle<String>>,
     watch: Arc<EncoderWatch>,
-    /// Until it appears under its name.
+    /// The temporary name, until it appears under its own.
     output: Option<Output>,
 }
 

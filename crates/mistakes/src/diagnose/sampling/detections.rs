@@ -47,7 +47,7 @@ pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
 const MOST_WRONG: usize = 400;
 const MOST_RIGHT: usize = 200;
 
-/// Gathers the samples of a trace step by step; none of scenes without polynomials.
+/// The samples of a trace, gathered step by step; scenes without polynomials have none.
 pub struct Detections<'a> {
     scene: &'a Scene,
     kinds: ByKind<OfKind>,

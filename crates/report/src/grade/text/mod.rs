@@ -23,7 +23,7 @@ pub enum TextDetail {
     Line,
     /// A table with a row for each of several submissions; for one submission its result.
     Table,
-    /// Also every scene that is not accepted.
+    /// In addition every scene that is not accepted.
     #[default]
     Wrong,
     /// Every scene.

@@ -11,7 +11,7 @@ use crate::{
     values,
 };
 
-/// Somebody who may do everything.
+/// An administrator, who may do everything.
 pub struct Admin {
     pub(crate) account: Account,
     pub(crate) app: App,

@@ -22,7 +22,7 @@ pub struct CourseOf {
     pub role: String,
 }
 
-/// Somebody who is signed in.
+/// A person who is signed in.
 pub struct Person {
     pub(crate) account: Account,
     /// The browser's session; `None` for a token.

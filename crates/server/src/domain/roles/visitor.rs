@@ -22,7 +22,7 @@ pub struct Secrets {
     pub address: Option<IpAddr>,
 }
 
-/// Somebody who need not be signed in.
+/// A person who need not be signed in.
 pub struct Visitor {
     pub(crate) app: App,
     pub(in crate::domain) secrets: Secrets,

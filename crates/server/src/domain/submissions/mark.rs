@@ -24,7 +24,7 @@ pub struct StudentHistory {
     pub name: String,
     /// All submissions of the student, newest first.
     pub submissions: Vec<Submission>,
-    /// Until when they may hand in, where that is another moment than for the others.
+    /// The time until which the student may hand in, if it differs from the others'.
     pub extended_to: Option<i64>,
 }
 

@@ -32,7 +32,7 @@ struct Row {
 
 /// The work of a member in an assignment, and how much they may still do.
 pub(super) struct OwnWork {
-    /// Until when they may hand in.
+    /// The time until which the student may hand in.
     pub(super) due: Option<i64>,
     /// Whether that has passed.
     pub(super) is_late: bool,

@@ -24,7 +24,7 @@ struct SignIn {
     frame: PageFrame,
     /// The provider's name, and where a sign-in there begins.
     provider: Option<(String, String)>,
-    /// Why the provider signs nobody in now.
+    /// The reason why the provider signs nobody in now.
     fault: String,
     /// The page to go on to.
     to: String,

@@ -3,7 +3,7 @@
 use super::{super::rows::rows, terms::Edit};
 
 rows! {
-    /// Something that a program does differently in a step.
+    /// A difference of a program in a step.
     StepMistake STEPS [Edit Edit]
     Wrong Forces {
         DragQuadratic "drag-quadratic": "Drag is multiplied by the speed."

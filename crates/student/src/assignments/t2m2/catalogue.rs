@@ -14,7 +14,7 @@ impl From<StepMistake> for Mistake {
 }
 
 rows! {
-    /// Something that a program does differently.
+    /// A difference of a program.
     Mistake CATALOGUE [Step StepMistake]
     Wrong ParticleParticle {
         ParticleParticleEmpty "pp-empty": "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
