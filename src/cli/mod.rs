@@ -34,6 +34,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
     }
+    commands::shell::complete_if_asked();
     if words.get(1).is_some_and(|word| word == "sample") {
         return sample::main(words.into_iter().skip(1), None);
     }

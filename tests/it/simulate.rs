@@ -175,15 +175,12 @@ fn wrong_usage_is_told_apart_from_a_wrong_trace() {
 }
 
 #[test]
-fn completions_and_the_manual_page_know_every_command() {
+fn the_manual_page_knows_every_command() {
     let workspace = Workspace::new();
-    let scripts = ["bash", "zsh", "fish"].map(|shell| workspace.run(["completions", shell]));
     let manual = workspace.run(["man"]);
-    for run in scripts.iter().chain([&manual]) {
-        assert_eq!(run.code, Some(0));
-        for command in ["simulate", "check", "trace", "record", "original"] {
-            assert!(run.out().contains(command), "{command}");
-        }
+    assert_eq!(manual.code, Some(0));
+    for command in ["simulate", "check", "trace", "record", "original"] {
+        assert!(manual.out().contains(command), "{command}");
     }
     let mut child = workspace.command().arg("man").spawn().unwrap();
     drop(child.stdout.take());

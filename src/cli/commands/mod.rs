@@ -20,7 +20,7 @@ mod results;
 mod scene;
 mod serve;
 mod shard;
-mod shell;
+pub(super) mod shell;
 mod shrink;
 mod simulate;
 mod submissions;

@@ -1,30 +1,93 @@
 //! Completion scripts and the manual page.
-use crate::cli::{
-    arguments::{Arguments, CompletionsArguments, ManArguments},
-    console,
+use crate::{
+    cli::{
+        arguments::{Arguments, CompletionsArguments, ManArguments},
+        console,
+    },
+    student::all_rows,
+    suite::{library, plan},
 };
-use anyhow::{Result, bail};
-use clap::CommandFactory;
-use clap_complete::Shell;
+use anyhow::{Context, Result, bail};
+use clap::{Command, CommandFactory};
+use clap_complete::{
+    CompleteEnv, Shell,
+    engine::{ArgValueCompleter, CompletionCandidate, PathCompleter, ValueCompleter},
+    env::Shells,
+};
+use std::ffi::OsStr;
 
 /// The name under which the program is installed.
 const NAME: &str = "fosssim-oracle";
 
-pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
-    let mut script = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Arguments::command(), NAME, &mut script);
-    if arguments.shell == Shell::Bash {
-        script = mend(&script);
-    }
-    console::print(&script)
+/// The environment variable by which a shell's script asks for completions.
+const VARIABLE: &str = "FOSSSIM_COMPLETE";
+
+/// Parts of the script for bash, which splits `asset:Group/name` into three words, and those that put them together.
+const WORDS_OF_BASH: [(&str, &str); 2] = [
+    (
+        r#"    local words=("${COMP_WORDS[@]}")
+    if [[ "${BASH_VERSINFO[0]}" -ge 4 ]]; then
+        words[COMP_CWORD]="$2"
+    fi
+"#,
+        r#"    local words=() word last=
+    for word in "${COMP_WORDS[@]:0:COMP_CWORD+1}"; do
+        if [[ ${#words[@]} -gt 0 && ($word == : || $last == :) ]]; then
+            words[${#words[@]}-1]+=$word
+        else
+            words+=("$word")
+        fi
+        last=$word
+    done
+    last=${words[${#words[@]}-1]}
+    _CLAP_COMPLETE_INDEX=$((${#words[@]} - 1))
+"#,
+    ),
+    (
+        "        compopt -o nospace\n    fi\n}",
+        "        compopt -o nospace\n    fi\n    COMPREPLY=(\"${COMPREPLY[@]#\"${last%\"${last##*:}\"}\"}\")\n}",
+    ),
+];
+
+/// Answers a shell that asks for completions, and ends the program then.
+pub(in crate::cli) fn complete_if_asked() {
+    CompleteEnv::with_factory(|| with_names(Arguments::command())).var(VARIABLE).bin(NAME).complete();
 }
 
-/// Returns a bash script whose labels match their uses. clap writes a hyphen in the program's name once as `__` and
-/// once as the mark of a command, so that nothing is completed behind a command (clap issue 6421). Without a hyphen, or
-/// when clap is mended, nothing changes.
-fn mend(script: &[u8]) -> Vec<u8> {
-    let (asked, written) = (NAME.replace('-', "__"), NAME.replace('-', "__subcmd__"));
-    String::from_utf8_lossy(script).replace(&written, &asked).into_bytes()
+/// Returns a command whose suites, scenes, traces and mistakes are completed by name.
+fn with_names(command: Command) -> Command {
+    let completed = command.mut_args(|argument| match argument.get_id().as_str() {
+        "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+            let names = plan::built_in_names().filter_map(|name| name.strip_suffix("@1").map(str::to_owned));
+            beginning(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
+        })),
+        "scene" | "trace" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+            let names = library::all_names().map(|name| format!("asset:{name}"));
+            beginning(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
+        })),
+        "mistake" => argument
+            .add(ArgValueCompleter::new(|typed: &OsStr| beginning(typed, all_rows().map(|row| row.id.to_owned())))),
+        _ => argument,
+    });
+    completed.mut_subcommands(with_names)
+}
+
+fn beginning(typed: &OsStr, names: impl Iterator<Item = String>) -> Vec<CompletionCandidate> {
+    let typed = typed.to_string_lossy();
+    names.filter(|name| name.starts_with(&*typed)).map(CompletionCandidate::new).collect()
+}
+
+pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
+    let (shells, mut script) = (Shells::builtins(), Vec::new());
+    let shell = shells.completer(&arguments.shell.to_string()).context("no script for this shell")?;
+    shell.write_registration(VARIABLE, NAME, NAME, NAME, &mut script)?;
+    let mut script = String::from_utf8(script)?;
+    if arguments.shell == Shell::Bash {
+        for (split, whole) in WORDS_OF_BASH {
+            script = script.replace(split, whole);
+        }
+    }
+    console::print(script)
 }
 
 pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {

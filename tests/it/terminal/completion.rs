@@ -5,6 +5,10 @@ use std::process::Command;
 
 /// The offers of bash for the last of these words, by the script as it is printed.
 fn offered(workspace: &Workspace, words: &[&str]) -> Vec<String> {
+    // Bash splits words at colons, which are words of their own.
+    let split = words.join("\n").replace(':', "\n:\n");
+    let split = if split.ends_with(":\n") { split.trim_end() } else { &split };
+    let words: Vec<&str> = split.split('\n').collect();
     let list: Vec<String> = words.iter().map(|word| format!("'{word}'")).collect();
     let (last, previous) = (words.len() - 1, words.get(words.len().wrapping_sub(2)).unwrap_or(&""));
     let script = format!(
@@ -17,6 +21,8 @@ fn offered(workspace: &Workspace, words: &[&str]) -> Vec<String> {
         words[last],
     );
     let mut bash = Command::new("bash");
+    let programs = std::path::Path::new(env!("CARGO_BIN_EXE_fosssim-oracle")).parent().expect("a folder");
+    bash.env("PATH", format!("{}:{}", programs.display(), std::env::var("PATH").unwrap_or_default()));
     let run = finish(bash.args(["--norc", "-c", &script]).current_dir(workspace.path("")));
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(run.err(), "", "{words:?}");
@@ -42,6 +48,15 @@ fn bash_completes_behind_a_command() {
     assert_eq!(offers(&["fosssim-oracle", "trace", "sh"]), ["show"]);
     assert_eq!(offers(&["fosssim-oracle", "trace", "show", "--st"]), ["--step"]);
     assert_eq!(offers(&["fosssim-oracle", "help", "trace", "in"]), ["info"]);
+    // Names of what comes with the program, next to files.
+    assert_eq!(offers(&["fosssim-oracle", "grade", "x", "--suite", "t1"]), ["t1m1", "t1m2", "t1m3"]);
+    assert_eq!(offers(&["fosssim-oracle", "grade", "x", "--suite", "comp"]), ["completions.bash"]);
+    assert_eq!(
+        offers(&["fosssim-oracle", "check", "asset:GeometricTests/pair-b"]),
+        ["GeometricTests/pair-becomes-rigid"]
+    );
+    assert!(offers(&["fosssim-oracle", "check", "a", "asset:"]).len() > 100);
+    assert_eq!(offers(&["fosssim-oracle", "demo", "--mistake", "pe-square-no-e"]), ["pe-square-no-eh"]);
 }
 
 #[test]
