@@ -4,20 +4,23 @@
 //! that `suite init` writes ([`template`]).
 use super::{
     near::closest,
-    shape::{self, Problem},
+    shape::{self, Problem, RawBuild, RawGroup, RawLimits, RawMistake, RawSpeed, RawSuite},
 };
 pub use fosssim_findings::{CourseNote, Hints, Visibility, speed::SpeedMarking};
 use fosssim_judge::Rules;
 use fosssim_model::assignments::Assignment;
 use fosssim_student::CATALOGUE;
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
     time::Duration,
 };
 use toml::Spanned;
 
-pub use super::{assignments::template, shape::MOST_POINTS};
+pub use super::{
+    assignments::template,
+    shape::{Credit, MOST_POINTS},
+};
 
 /// A validated suite: its scenes are patterns until they are looked up (see [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
@@ -149,18 +152,6 @@ impl Default for Patience {
     }
 }
 
-/// The rule for partial success.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Credit {
-    /// The group's points times the share of accepted scenes.
-    Scenes,
-    /// Within each scene, the share of steps without a finding.
-    Steps,
-    /// All or nothing.
-    All,
-}
-
 /// A place in the file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Position {
@@ -208,75 +199,6 @@ impl std::fmt::Display for Position {
 pub struct SuiteError {
     /// Every problem with its position, in order.
     pub problems: Vec<(Position, String)>,
-}
-
-/// A suite whose shape has been checked: faults of single values have been reported.
-#[derive(Deserialize, Default)]
-struct RawSuite {
-    schema: Option<Spanned<u32>>,
-    name: Option<Spanned<String>>,
-    milestone: Option<String>,
-    rules: Option<Rules>,
-    hints: Option<Hints>,
-    show_output: Option<bool>,
-    run: Option<Spanned<Vec<String>>>,
-    build: Option<Spanned<RawBuild>>,
-    limits: Option<RawLimits>,
-    mistake: Option<Vec<RawMistake>>,
-    group: Option<Vec<Spanned<RawGroup>>>,
-}
-
-#[derive(Deserialize)]
-struct RawMistake {
-    key: Option<Spanned<String>>,
-    text: Option<String>,
-    link: Option<Spanned<String>>,
-    points: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct RawBuild {
-    command: Option<Vec<String>>,
-    program: Option<String>,
-    wall_seconds: Option<f64>,
-    memory_mib: Option<f64>,
-}
-
-#[derive(Deserialize, Default)]
-struct RawLimits {
-    cpu_seconds: Option<f64>,
-    wall_seconds: Option<f64>,
-    memory_mib: Option<f64>,
-    output_mib: Option<f64>,
-    trace_mib: Option<f64>,
-    folder_mib: Option<f64>,
-    files: Option<f64>,
-    sanitizers: Option<bool>,
-    time_outs: Option<f64>,
-    total_seconds: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct RawGroup {
-    name: Option<Spanned<String>>,
-    scenes: Option<Spanned<Vec<Spanned<String>>>>,
-    points: Option<f64>,
-    extra: Option<bool>,
-    credit: Option<Credit>,
-    visibility: Option<Visibility>,
-    hints: Option<Hints>,
-    text: Option<String>,
-    link: Option<Spanned<String>>,
-    speed: Option<Spanned<RawSpeed>>,
-}
-
-#[derive(Deserialize)]
-struct RawSpeed {
-    points: Option<f64>,
-    full_at: Option<f64>,
-    none_at: Option<f64>,
-    second: Option<f64>,
-    runs: Option<f64>,
 }
 
 /// Reads and validates a suite.

@@ -2,7 +2,10 @@
 //!
 //! Finds all faults together, and removes wrong parts, so that the others can still be checked.
 use super::near::closest;
+use fosssim_findings::{Hints, Visibility};
+use fosssim_judge::Rules;
 use fosssim_model::assignments::Assignment;
+use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, ops::Range};
 use toml::{
     Spanned,
@@ -14,6 +17,18 @@ pub(super) type Problem = (Range<usize>, String);
 
 /// The points that a group may have.
 pub const MOST_POINTS: Range<f64> = 0.0..1e6;
+
+/// The rule for partial success.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Credit {
+    /// The group's points times the share of accepted scenes.
+    Scenes,
+    /// Within each scene, the share of steps without a finding.
+    Steps,
+    /// All or nothing.
+    All,
+}
 
 /// The type of a key's value.
 enum ValueKind {
@@ -33,26 +48,6 @@ enum ValueKind {
 /// A key: its name, its kind of value, and whether it is required.
 struct Key(&'static str, ValueKind, bool);
 
-const BUILD: &[Key] = &[
-    Key("command", ValueKind::Texts, true),
-    Key("program", ValueKind::Text, true),
-    Key("wall_seconds", ValueKind::Number("build.", 0.01..86_400.0), false),
-    Key("memory_mib", ValueKind::Number("build.", 1.0..1e6), false),
-];
-
-const LIMITS: &[Key] = &[
-    Key("cpu_seconds", ValueKind::Number("", 0.01..86_400.0), false),
-    Key("wall_seconds", ValueKind::Number("", 0.01..86_400.0), false),
-    Key("memory_mib", ValueKind::Number("", 0.001..1e6), false),
-    Key("output_mib", ValueKind::Number("", 0.001..1e6), false),
-    Key("trace_mib", ValueKind::Number("", 0.001..1e6), false),
-    Key("folder_mib", ValueKind::Number("", 0.001..1e6), false),
-    Key("files", ValueKind::Number("", 1.0..1e6), false),
-    Key("sanitizers", ValueKind::Flag, false),
-    Key("time_outs", ValueKind::Number("", 0.0..1e6), false),
-    Key("total_seconds", ValueKind::Number("", 0.01..86_400_000.0), false),
-];
-
 const HINTS: &[&str] = &["none", "where", "what", "full"];
 
 /// The keys of the milestones, in the order of the course.
@@ -66,47 +61,77 @@ const MILESTONES: [&str; Assignment::ALL.len()] = {
     keys
 };
 
-const GROUP: &[Key] = &[
-    Key("name", ValueKind::Text, true),
-    Key("scenes", ValueKind::Texts, true),
-    Key("points", ValueKind::Number("", MOST_POINTS), false),
-    Key("extra", ValueKind::Flag, false),
-    Key("credit", ValueKind::Choice(&["scenes", "steps", "all"]), false),
-    Key("visibility", ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false),
-    Key("hints", ValueKind::Choice(HINTS), false),
-    Key("text", ValueKind::Text, false),
-    Key("link", ValueKind::Text, false),
-    Key("speed", ValueKind::Table(SPEED), false),
-];
+/// Declares the tables of the file: each with its keys, and the values that are read from them once their shape has been
+/// checked.
+macro_rules! tables {
+    ($($raw:ident $keys:ident { $($key:ident: $value:ty = $kind:expr, $is_required:literal;)+ })+) => {
+        $(
+            #[derive(Deserialize, Default)]
+            pub(super) struct $raw { $(pub(super) $key: Option<$value>,)+ }
 
-const MISTAKE: &[Key] = &[
-    Key("key", ValueKind::Text, true),
-    Key("text", ValueKind::Text, false),
-    Key("link", ValueKind::Text, false),
-    Key("points", ValueKind::Number("mistake.", MOST_POINTS), false),
-];
+            const $keys: &[Key] = &[$(Key(stringify!($key), $kind, $is_required)),+];
+        )+
+    };
+}
 
-const SPEED: &[Key] = &[
-    Key("points", ValueKind::Number("speed.", MOST_POINTS), true),
-    Key("full_at", ValueKind::Number("speed.", 0.001..1e6), false),
-    Key("none_at", ValueKind::Number("speed.", 0.001..1e6), false),
-    Key("second", ValueKind::Number("speed.", 0.001..1e4), false),
-    Key("runs", ValueKind::Number("speed.", 1.0..101.0), false),
-];
-
-const SUITE: &[Key] = &[
-    Key("schema", ValueKind::Whole, true),
-    Key("name", ValueKind::Text, true),
-    Key("milestone", ValueKind::Choice(&MILESTONES), false),
-    Key("rules", ValueKind::Choice(&["parity", "fair", "both"]), false),
-    Key("hints", ValueKind::Choice(HINTS), false),
-    Key("show_output", ValueKind::Flag, false),
-    Key("run", ValueKind::Texts, false),
-    Key("build", ValueKind::Table(BUILD), false),
-    Key("limits", ValueKind::Table(LIMITS), false),
-    Key("mistake", ValueKind::Tables(MISTAKE), false),
-    Key("group", ValueKind::Tables(GROUP), false),
-];
+tables! {
+    RawBuild BUILD {
+        command: Vec<String> = ValueKind::Texts, true;
+        program: String = ValueKind::Text, true;
+        wall_seconds: f64 = ValueKind::Number("build.", 0.01..86_400.0), false;
+        memory_mib: f64 = ValueKind::Number("build.", 1.0..1e6), false;
+    }
+    RawLimits LIMITS {
+        cpu_seconds: f64 = ValueKind::Number("", 0.01..86_400.0), false;
+        wall_seconds: f64 = ValueKind::Number("", 0.01..86_400.0), false;
+        memory_mib: f64 = ValueKind::Number("", 0.001..1e6), false;
+        output_mib: f64 = ValueKind::Number("", 0.001..1e6), false;
+        trace_mib: f64 = ValueKind::Number("", 0.001..1e6), false;
+        folder_mib: f64 = ValueKind::Number("", 0.001..1e6), false;
+        files: f64 = ValueKind::Number("", 1.0..1e6), false;
+        sanitizers: bool = ValueKind::Flag, false;
+        time_outs: f64 = ValueKind::Number("", 0.0..1e6), false;
+        total_seconds: f64 = ValueKind::Number("", 0.01..86_400_000.0), false;
+    }
+    RawGroup GROUP {
+        name: Spanned<String> = ValueKind::Text, true;
+        scenes: Spanned<Vec<Spanned<String>>> = ValueKind::Texts, true;
+        points: f64 = ValueKind::Number("", MOST_POINTS), false;
+        extra: bool = ValueKind::Flag, false;
+        credit: Credit = ValueKind::Choice(&["scenes", "steps", "all"]), false;
+        visibility: Visibility = ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false;
+        hints: Hints = ValueKind::Choice(HINTS), false;
+        text: String = ValueKind::Text, false;
+        link: Spanned<String> = ValueKind::Text, false;
+        speed: Spanned<RawSpeed> = ValueKind::Table(SPEED), false;
+    }
+    RawMistake MISTAKE {
+        key: Spanned<String> = ValueKind::Text, true;
+        text: String = ValueKind::Text, false;
+        link: Spanned<String> = ValueKind::Text, false;
+        points: f64 = ValueKind::Number("mistake.", MOST_POINTS), false;
+    }
+    RawSpeed SPEED {
+        points: f64 = ValueKind::Number("speed.", MOST_POINTS), true;
+        full_at: f64 = ValueKind::Number("speed.", 0.001..1e6), false;
+        none_at: f64 = ValueKind::Number("speed.", 0.001..1e6), false;
+        second: f64 = ValueKind::Number("speed.", 0.001..1e4), false;
+        runs: f64 = ValueKind::Number("speed.", 1.0..101.0), false;
+    }
+    RawSuite SUITE {
+        schema: Spanned<u32> = ValueKind::Whole, true;
+        name: Spanned<String> = ValueKind::Text, true;
+        milestone: String = ValueKind::Choice(&MILESTONES), false;
+        rules: Rules = ValueKind::Choice(&["parity", "fair", "both"]), false;
+        hints: Hints = ValueKind::Choice(HINTS), false;
+        show_output: bool = ValueKind::Flag, false;
+        run: Spanned<Vec<String>> = ValueKind::Texts, false;
+        build: Spanned<RawBuild> = ValueKind::Table(BUILD), false;
+        limits: RawLimits = ValueKind::Table(LIMITS), false;
+        mistake: Vec<RawMistake> = ValueKind::Tables(MISTAKE), false;
+        group: Vec<Spanned<RawGroup>> = ValueKind::Tables(GROUP), false;
+    }
+}
 
 /// The tables to which a misplaced key may belong.
 const PLACES: [(&str, &[Key]); 6] = [
