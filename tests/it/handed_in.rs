@@ -38,10 +38,18 @@ fn the_program_itself_earns_no_points() {
     for name in ["copy/FOSSSim", "changed/FOSSSim", "named/fosssim-sample", "drop-in/FOSSSimOracle"] {
         workspace.write(name, if name.starts_with("copy") { &changed[..changed.len() - 1] } else { &changed });
     }
+    let python = |line: &str| {
+        format!(
+            "#!/usr/bin/python3\nimport os, sys\n{line}\nos.execv('o', ['fosssim-sample', 'sample', *sys.argv[1:]])\n"
+        )
+    };
     for (name, line) in [
         ("script/FOSSSim", format!("#!/bin/sh\nexec {oracle} sample \"$@\"\n")),
-        ("copier/FOSSSim", format!("#!/bin/sh\ncp {oracle} o && ./o sample \"$@\"\n")),
-        ("linker/FOSSSim", format!("#!/bin/sh\nln -s {oracle} fosssim-sample && ./fosssim-sample \"$@\"\n")),
+        (
+            "copier/FOSSSim",
+            python(&format!("open('o', 'wb').write(open('{oracle}', 'rb').read()); os.chmod('o', 493)")),
+        ),
+        ("linker/FOSSSim", python(&format!("os.symlink('{oracle}', 'o')"))),
         ("interpreter/FOSSSim", format!("#!{oracle} sample\n")),
         ("itself/FOSSSim", "#!/bin/sh\nexec /proc/$PPID/exe sample \"$@\"\n".to_owned()),
     ] {
