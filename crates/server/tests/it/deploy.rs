@@ -126,6 +126,11 @@ fn yaml_is_well_formed() {
         \x20       named = {v['name'] for v in pod['volumes'] + spec.get('volumeClaimTemplates', []) if 'name' in v}\n\
         \x20       named |= {v['metadata']['name'] for v in spec.get('volumeClaimTemplates', [])}\n\
         \x20       assert {m['name'] for m in c['volumeMounts']} <= named, (c, named)\n\
+        job = yaml.safe_load(open('kubernetes/class.yaml'))['spec']\n\
+        c = job['template']['spec']['containers'][0]\n\
+        assert job['completionMode'] == 'Indexed' and c['env'][0]['value'] == str(job['completions']), job\n\
+        scale = yaml.safe_load(open('kubernetes/scale.yaml'))['spec']\n\
+        assert scale['scaleTargetRef']['name'] == 'fosssim-worker', scale\n\
         c = yaml.safe_load(open('compose/compose.yaml'))\n\
         named = {s for v in c['services'].values() for s in v.get('secrets', [])}\n\
         assert named <= set(c['secrets']) and isinstance(c['services']['server']['command'][0], str), c\n";
