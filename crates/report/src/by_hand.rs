@@ -83,13 +83,13 @@ impl Steer for FirstSystem {
 
 /// Returns the element of a force, and what it acts on.
 fn force_name(force: &Force) -> String {
+    let element = force.kind().element();
     match force {
-        Force::Spring { edge, .. } => format!("springforce on edge {edge}"),
-        Force::SimpleGravity { .. } => "simplegravity".to_owned(),
-        Force::Gravitation { first, second, .. } => format!("gravitationalforce of {first} and {second}"),
-        Force::Constant { .. } => "constantforce".to_owned(),
-        Force::Drag { .. } => "dragdamping".to_owned(),
-        Force::Vortex { first, second, .. } => format!("vortexforce of {first} and {second}"),
+        Force::Spring { edge, .. } => format!("{element} on edge {edge}"),
+        Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => {
+            format!("{element} of {first} and {second}")
+        }
+        Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => element.to_owned(),
     }
 }
 

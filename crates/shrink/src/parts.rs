@@ -74,10 +74,11 @@ fn keep_edges(scene: &mut Scene, mut keeps: impl FnMut((usize, usize)) -> bool) 
     });
 }
 
-/// Returns the bodies that a force names.
+/// Returns the bodies that a force names, which the removal of bodies renumbers.
 const fn bodies(force: &Force) -> [Option<usize>; 2] {
     match *force {
         Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => [Some(first), Some(second)],
-        _ => [None, None],
+        // A spring names its edge.
+        Force::Spring { .. } | Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => [None; 2],
     }
 }

@@ -84,7 +84,8 @@ impl HessianSum<'_> {
                 }
             }
             Force::Vortex { .. } if !self.is_of_velocities => return Err(StepFailure::VortexHessian),
-            _ => {}
+            Force::Gravitation { .. } | Force::Drag { .. } | Force::Vortex { .. } => {}
+            Force::SimpleGravity { .. } | Force::Constant { .. } => {}
         }
         Ok(())
     }

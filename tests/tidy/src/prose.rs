@@ -200,6 +200,17 @@ fn links_of_documents_lead_to_files_and_headings() {
     assert!(links > 90, "{links} links: are these the documents?");
 }
 
+/// A setting of the server without a row in its pages is found here.
+#[test]
+fn settings_of_the_server_have_their_rows() {
+    let arguments = text(&root().join("crates/server/src/cli/arguments.rs"));
+    let pages: String = documents_in(&["docs/server"]).iter().map(|page| text(page)).collect();
+    let names: Vec<&str> = arguments.split("env = \"").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+    assert!(names.len() > 10, "{names:?}: is this where they are declared?");
+    let missing: Vec<_> = names.into_iter().filter(|name| !pages.contains(name)).collect();
+    assert!(missing.is_empty(), "docs/server names no {missing:?}");
+}
+
 /// Every page of `docs` stands in its table of contents.
 #[test]
 fn the_table_of_contents_has_every_page() {
