@@ -24,7 +24,7 @@ pub(crate) struct SignOfLife {
     /// The number of gradings that it does at one time; 0 while it can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
-    /// The reason why it can't.
+    /// The reason why it can't grade.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
     /// The worker's version.

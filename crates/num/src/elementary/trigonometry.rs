@@ -97,7 +97,7 @@ fn sine(x: f64, dx: f64) -> f64 {
     (sine + fused(s, cosine, rest)).copysign(x)
 }
 
-/// Returns the cosine of `x + dx` for the same.
+/// Returns the cosine of `x + dx`, for arguments as of [`sine`].
 fn cosine(x: f64, dx: f64) -> f64 {
     let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
     let difference = difference + if x < 0.0 { -dx } else { dx };

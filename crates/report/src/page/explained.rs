@@ -83,7 +83,7 @@ impl ExplainedContent<'_> {
         small.map(|((small, card), number)| smallest::article(small, card.as_ref(), number)).collect()
     }
 
-    /// Returns the traces; the most telling one is open.
+    /// Returns the traces; the clearest one is open.
     fn traces(&self) -> Vec<Trace<'_>> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
         let all: Vec<ExplainedCase<'_>> = cases.iter().zip(self.page.cards.iter().map(Option::as_ref)).collect();

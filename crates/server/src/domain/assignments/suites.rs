@@ -8,7 +8,7 @@ use serde::Deserialize;
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     names: Vec<String>,
-    /// The title of each.
+    /// The titles of the suites, in the same order.
     titles: Vec<String>,
     /// Names without a version, each with the newest version's name.
     newest: Vec<(String, String)>,
