@@ -19,7 +19,7 @@ fn serve_becomes_the_server_beside_the_program() {
     let without = run(folder.path(), &["serve", "--data", "course"]);
     assert_eq!(without.status.code(), Some(2));
     let message = String::from_utf8_lossy(&without.stderr).into_owned();
-    assert!(message.contains("there is no ") && message.contains("cargo install --path crates/server"), "{message}");
+    assert!(message.contains("there is no ") && message.contains("install the package fosssim-server"), "{message}");
     symlink("/bin/echo", folder.path().join("fosssim-server")).expect("a link");
     let with = run(folder.path(), &["serve", "--data", "course", "--help"]);
     assert_eq!(String::from_utf8_lossy(&with.stdout), "serve --data course --help\n");
