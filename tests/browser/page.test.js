@@ -456,10 +456,12 @@ test("a scene is written: messages in place, its motion, and files that are the 
   const { page, complaints, close } = await opened(browser, html);
   await page.locator("#tab-try").click();
   await page.waitForSelector("#canvas[data-step]");
+  const before = await page.locator("#source").inputValue();
   await page.locator("#start").selectOption("ContinuousTimeTests/head-on-equal-masses");
-  await page.waitForFunction(
-    () => document.documentElement.dataset.tried === String(document.getElementById("source").value.length),
-  );
+  await page.waitForFunction((before) => {
+    const { value } = document.getElementById("source");
+    return value !== before && document.documentElement.dataset.tried === String(value.length);
+  }, before);
   const { bytes } = await saved(page, "reference trace");
   const own = oracle("simulate", "asset:ContinuousTimeTests/head-on-equal-masses", "--output", "own.bin");
   assert.equal(own.status, 0, own.stderr);

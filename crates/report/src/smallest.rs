@@ -29,7 +29,8 @@ pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
     parts.extend(small.differs.clone());
     parts.extend(small.by_hand.iter().map(|by_hand| format!("{}{}", heading("By hand"), by_hand.text)));
     let commands = commands(small, file).into_iter().map(|line| format!("  $ {line}\n"));
-    parts.push(heading("Next") + &commands.collect::<String>());
+    let save = if file.is_none() { "  Save the scene as small.xml (--output writes it).\n" } else { "" };
+    parts.push(heading("Next") + save + &commands.collect::<String>());
     parts.join("\n")
 }
 
@@ -55,9 +56,6 @@ fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
             .filter_map(|by_hand| by_hand.pair.as_ref())
             .map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin --step 1 --pair {pair}")),
     );
-    if file.is_none() {
-        all.insert(0, format!("fosssim-oracle shrink {program} --output {scene}"));
-    }
     all
 }
 

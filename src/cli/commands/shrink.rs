@@ -184,10 +184,12 @@ fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestSc
         told.differs = differs;
         let of_pair = |pair| Some(HandComputation { pair: Some(pair_key(pair)), text: by_hand(small, pair)? });
         let forces = || Some(HandComputation { pair: None, text: first_step(scene, "small.xml")? });
+        let first_pair = || of_pair(pairs(scene).iter().next()?);
         told.by_hand = match pair {
             Some(pair) => of_pair(pair),
             None if scene.steps() > 1 => None,
-            None => forces().or_else(|| of_pair(pairs(scene).iter().next()?)),
+            // Where a pair is detected, students write more than forces.
+            None => first_pair().or_else(forces),
         };
     }
     (told, card)

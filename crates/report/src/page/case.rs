@@ -95,7 +95,8 @@ impl Case<'_> {
         Some(if what.equal {
             "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
         } else {
-            "The reference with exactly the likely mistake writes another trace: compare its motion with yours."
+            "The reference with exactly the likely mistake writes other bytes, by round-off or by more: compare its \
+             motion with yours."
         })
     }
 }

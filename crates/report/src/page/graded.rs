@@ -135,7 +135,7 @@ impl GradeContent<'_> {
     /// Returns the first scene of a group that has something to tell.
     fn first_of(&self, group: &GroupGrade) -> Option<&SceneGrade> {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
-        self.told.iter().map(|(scene, _)| *scene).find(|scene| is_here(scene))
+        self.told.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
     }
 
     /// Renders the smallest scenes.

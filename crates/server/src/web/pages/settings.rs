@@ -49,6 +49,7 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
         let words = match (name, title) {
             ("", _) => "the grader's default".to_owned(),
             (name, "") => name.to_owned(),
+            (name, title) if title.contains(name) => title.to_owned(),
             (name, title) => format!("{title} ({name})"),
         };
         suites.push((name.to_owned(), words, is_named && *name == settings.suite));

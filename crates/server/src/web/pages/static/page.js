@@ -74,8 +74,8 @@ if (form) {
       }
       // A refusal is a page that says why, and what to do.
       const page = new DOMParser().parseFromString(request.responseText, "text/html");
-      const words = [...page.querySelectorAll("main h1, main p")].map((part) => part.textContent.trim());
-      stop(words.join(" ") || `The server answered ${request.status}.`);
+      const [title, ...words] = [...page.querySelectorAll("main h1, main p")].map((part) => part.textContent.trim());
+      stop(title ? `${title}: ${words.join(". ")}` : `The server answered ${request.status}.`);
     });
     request.addEventListener("error", () =>
       stop("The connection broke off. Hand in again: the same upload counts once."),
