@@ -16,7 +16,6 @@ mod author;
 mod continuous_time;
 mod detection;
 mod edited;
-mod encounter;
 mod failsafe;
 mod forces;
 mod hessians;

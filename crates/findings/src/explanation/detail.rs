@@ -67,15 +67,13 @@ pub enum PolynomialDetail {
     FirstOnly(usize),
     /// Every displacement carries this factor.
     Displacements(#[serde(with = "fosssim_num::written")] f64),
-    /// The exact form of the exchange with this key.
-    Exchange {
+    /// The exact form of the change with this key.
+    Named {
         /// The key.
         key: Cow<'static, str>,
         /// Whether all these pairs are a particle's and an edge's, whose radii have names of their own.
         of_edges: bool,
     },
-    /// The exact form of the misunderstanding with this key.
-    Special(Cow<'static, str>),
     /// Another quantity is used for a letter of a formula.
     StandsFor {
         /// The formula.

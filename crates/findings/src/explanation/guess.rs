@@ -8,10 +8,8 @@ use std::borrow::Cow;
 pub enum Guess {
     /// A guess about the whole list of coefficients.
     List(ListGuess),
-    /// One input is used instead of another: the exchange of this key, for which the assignment has words.
-    Exchange(Cow<'static, str>),
-    /// A misunderstanding with a formula of its own, with this key; the assignment has words for it.
-    Special(Cow<'static, str>),
+    /// Other inputs or another formula are used: the change of this key, for which the assignment has words.
+    Named(Cow<'static, str>),
     /// A guess about one quantity of the formula.
     Quantity(QuantityGuess),
     /// A guess about the coefficients of some powers of t.
@@ -33,7 +31,7 @@ impl Guess {
     /// Returns whether it may be made of several polynomials, as one mistake.
     #[must_use]
     pub const fn is_general(&self) -> bool {
-        matches!(self, Self::List(_) | Self::Exchange(_) | Self::Special(_))
+        matches!(self, Self::List(_) | Self::Named(_))
     }
 
     /// Returns the explanation's key.
@@ -41,7 +39,7 @@ impl Guess {
     pub fn key(&self) -> &str {
         match self {
             Self::List(guess) => guess.name(),
-            Self::Exchange(key) | Self::Special(key) => key,
+            Self::Named(key) => key,
             Self::Quantity(QuantityGuess::Other) => "letter",
             Self::Quantity(_) => "letter-factor",
             Self::Coefficients { wrong, .. } => wrong.name(),

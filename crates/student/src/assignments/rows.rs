@@ -71,12 +71,15 @@ impl<M> RowOf<M> {
     }
 }
 
-/// A table of rows, and the type of its mistakes: name of the type, name of the table, and further variants that hold
-/// mistakes of other tables.
+/// A table of rows, and the type of its mistakes: name of the type, name of the table, further variants that hold
+/// mistakes of other tables, and the type of edits. A mistake of a formula has its edit in brackets, from which the
+/// student's program follows.
 macro_rules! rows {
     (
-        $(#[$doc:meta])* $type:ident $table:ident [$($of:ident $other:ident),*]
-        $($kind:ident $area:ident { $($mistake:ident $id:literal: $what:literal => $term:literal;)* })*
+        $(#[$doc:meta])* $type:ident $table:ident [$($of:ident $other:ident),*] [$($edits:ident)?]
+        $($kind:ident $area:ident {
+            $($mistake:ident $id:literal $([$edit:expr])?: $what:literal => $term:literal;)*
+        })*
     ) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -96,6 +99,8 @@ macro_rules! rows {
             }
         }
 
+        $crate::assignments::rows::rows!(@ $type [$($edits)?] $($($mistake $([$edit])?,)*)*);
+
         /// All rows of this table, in the order of the assignment.
         pub const $table: &[$crate::assignments::rows::RowOf<$type>] = &[$($($crate::assignments::rows::RowOf {
             mistake: $type::$mistake,
@@ -105,6 +110,19 @@ macro_rules! rows {
             what: $what,
             term: $term,
         },)*)*];
+    };
+    (@ $type:ident [] $($rest:tt)*) => {};
+    (@ $type:ident [$edits:ident] $($mistake:ident $([$edit:expr])?,)*) => {
+        impl $type {
+            /// Returns what it changes in the formulas of a pair, if that is where it is made.
+            #[must_use]
+            pub fn edit(self) -> Option<$edits> {
+                match self {
+                    $($(Self::$mistake => Some($edit),)?)*
+                    _ => None,
+                }
+            }
+        }
     };
 }
 pub(super) use rows;

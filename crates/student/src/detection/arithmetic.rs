@@ -8,7 +8,7 @@ use std::ops::{Add, Div, Mul, Sub};
 use fosssim_num::vector::Vec2;
 
 use crate::assignments::t2m2::{Subject, formulas::readings};
-use crate::encounter::MovingBody;
+use fosssim_model::sim::PointMotion;
 
 /// The numbers of a program.
 pub trait Number:
@@ -59,8 +59,8 @@ fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
 }
 
 /// Returns a center at the time `t`.
-fn at<N: Number>(body: &MovingBody, t: f64) -> Vector<N> {
-    plus(vector(body.start), N::from(t), vector(body.displacement))
+fn at<N: Number>(body: &PointMotion, t: f64) -> Vector<N> {
+    plus(vector(body.start), N::from(t), vector(body.shift))
 }
 
 /// Returns a polynomial, highest power first, from the letters of its first formula.
@@ -77,35 +77,35 @@ fn evaluate<N: Number>(subject: Subject, letters: &[N]) -> Vec<f64> {
 }
 
 /// Returns the overlap and approach of two particles.
-pub fn particle_particle<N: Number>(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
+pub fn particle_particle<N: Number>([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let x: Vector<N> = minus(vector(two.start), vector(one.start));
-    let d: Vector<N> = minus(vector(two.displacement), vector(one.displacement));
-    let reach = N::from(one.radius) + N::from(two.radius);
+    let d: Vector<N> = minus(vector(two.shift), vector(one.shift));
+    let reach = N::from(radii[0]) + N::from(radii[1]);
     let letters = [dot(d, d), dot(x, d), dot(x, x), reach * reach];
     vec![evaluate(Subject::ParticleOverlap, &letters), evaluate(Subject::ParticleApproach, &letters)]
 }
 
 /// Returns the overlap and approach of a particle and a half-plane.
-pub fn particle_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+pub fn particle_half_plane<N: Number>(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let q: Vector<N> = vector(normal);
     let offset = minus(vector(point), vector(one.start));
-    let radius = N::from(one.radius);
-    let letters = [dot(vector(one.displacement), q), dot(offset, q), dot(q, q), radius * radius];
+    let radius = N::from(radius);
+    let letters = [dot(vector(one.shift), q), dot(offset, q), dot(q, q), radius * radius];
     vec![evaluate(Subject::HalfPlaneOverlap, &letters), evaluate(Subject::HalfPlaneApproach, &letters)]
 }
 
 /// Returns overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
-pub fn particle_edge<N: Number>(bodies: &[MovingBody; 3], edge_radius: f64) -> Vec<Vec<f64>> {
+pub fn particle_edge<N: Number>(bodies: &[PointMotion; 3], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let [one, two, three] = bodies;
     let between = |a: Vec2, b: Vec2| -> Vector<N> { minus(vector(a), vector(b)) };
     let (x12, x32) = (between(one.start, two.start), between(three.start, two.start));
-    let (d12, d32) = (between(one.displacement, two.displacement), between(three.displacement, two.displacement));
+    let (d12, d32) = (between(one.shift, two.shift), between(three.shift, two.shift));
     let (x13, x23) = (between(one.start, three.start), between(two.start, three.start));
-    let (d13, d23) = (between(one.displacement, three.displacement), between(two.displacement, three.displacement));
+    let (d13, d23) = (between(one.shift, three.shift), between(two.shift, three.shift));
     let [f, g, h] = [dot(x12, x32), dot(x12, d32) + dot(d12, x32), dot(d12, d32)];
     let [xx, dx, dd] = [dot(x12, x12), dot(d12, x12), dot(d12, d12)];
     let [a, b, c] = [dot(x32, x32), dot(x32, d32), dot(d32, d32)];
-    let reach = N::from(one.radius) + N::from(edge_radius);
+    let reach = N::from(radii[0]) + N::from(radii[1]);
     let nothing = N::from(0.0);
     vec![
         evaluate(Subject::EdgeOverlap, &[f, g, h, xx, dx, dd, a, b, c, reach * reach]),
@@ -116,12 +116,12 @@ pub fn particle_edge<N: Number>(bodies: &[MovingBody; 3], edge_radius: f64) -> V
 }
 
 /// Returns the vector from the first center to the second at time `t`.
-pub fn vector_between_particles<N: Number>(one: &MovingBody, two: &MovingBody, t: f64) -> Vec2 {
+pub fn vector_between_particles<N: Number>([one, two]: &[PointMotion; 2], t: f64) -> Vec2 {
     rounded_vector::<N>(minus(at(two, t), at(one, t)))
 }
 
 /// Returns the vector from the particle to the closest point of the edge's line at time `t`.
-pub fn vector_to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) -> Vec2 {
+pub fn vector_to_edge<N: Number>([one, two, three]: &[PointMotion; 3], t: f64) -> Vec2 {
     let along: Vector<N> = minus(at(three, t), at(two, t));
     let beside = minus(at(one, t), at(two, t));
     let alpha = dot(beside, along) / dot(along, along);
@@ -129,7 +129,7 @@ pub fn vector_to_edge<N: Number>([one, two, three]: &[MovingBody; 3], t: f64) ->
 }
 
 /// Returns the vector from the particle to the boundary of a half-plane at time `t`.
-pub fn to_half_plane<N: Number>(one: &MovingBody, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
+pub fn to_half_plane<N: Number>(one: &PointMotion, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let q: Vector<N> = vector(normal);
     let share = dot(minus(vector(point), at(one, t)), q) / dot(q, q);
     rounded_vector([share * q[0], share * q[1]])

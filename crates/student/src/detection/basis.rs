@@ -1,7 +1,7 @@
 //! Correct programs whose coefficients take a detour: by way of Bernstein's basis, or of values at some times.
 use fosssim_num::vector::Vec2;
 
-use crate::encounter::MovingBody;
+use fosssim_model::sim::PointMotion;
 
 /// Returns a power basis list (highest power first) in Bernstein's basis over the step, and back.
 pub fn through_bernstein(list: &[f64]) -> Vec<f64> {
@@ -52,35 +52,35 @@ fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
 }
 
 /// Returns the overlap and approach of two particles, from values.
-pub fn particle_particle(one: &MovingBody, two: &MovingBody) -> Vec<Vec<f64>> {
+pub fn particle_particle([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let n = |t| two.at(t) - one.at(t);
-    let reach = one.radius + two.radius;
-    let closing = one.displacement - two.displacement;
+    let reach = radii[0] + radii[1];
+    let closing = one.shift - two.shift;
     vec![interpolate(2, |t| reach * reach - n(t).dot(&n(t))), interpolate(1, |t| closing.dot(&n(t)))]
 }
 
 /// Returns the overlap and approach of a particle and a half-plane, from values.
-pub fn particle_half_plane(one: &MovingBody, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
+pub fn particle_half_plane(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let away = |t| (point - one.at(t)).dot(&normal);
-    let reach = one.radius * one.radius * normal.dot(&normal);
-    let speed = one.displacement.dot(&normal);
+    let reach = radius * radius * normal.dot(&normal);
+    let speed = one.shift.dot(&normal);
     vec![interpolate(2, |t| reach - away(t) * away(t)), interpolate(1, |t| speed * away(t))]
 }
 
 /// Returns the overlap of a particle and an edge, from values.
-pub fn overlap_from_values(bodies: &[MovingBody; 3], square: f64) -> Vec<f64> {
+pub fn overlap_from_values(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     interpolate(4, |t| overlap(bodies, square, t))
 }
 
 /// Returns the overlap of a particle and an edge at one time.
-fn overlap([one, two, three]: &[MovingBody; 3], square: f64, t: f64) -> f64 {
+fn overlap([one, two, three]: &[PointMotion; 3], square: f64, t: f64) -> f64 {
     let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
     let cross = along.x * beside.y - along.y * beside.x;
     square * along.dot(&along) - cross * cross
 }
 
 /// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
-pub fn particle_edge(bodies @ [one, two, three]: &[MovingBody; 3], square: f64) -> [Vec<f64>; 3] {
+pub fn particle_edge(bodies @ [one, two, three]: &[PointMotion; 3], square: f64) -> [Vec<f64>; 3] {
     [
         overlap_from_values(bodies, square),
         interpolate(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),

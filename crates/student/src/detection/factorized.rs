@@ -4,16 +4,16 @@
 //! The quartic is `R^2 g - q^2`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
 use fosssim_num::vector::Vec2;
 
-use crate::encounter::MovingBody;
+use fosssim_model::sim::PointMotion;
 
 fn cross(a: Vec2, b: Vec2) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
 /// Returns `q` and `g`, highest power first.
-fn quadratics([one, two, three]: &[MovingBody; 3]) -> ([f64; 3], [f64; 3]) {
-    let (w0, w1) = (one.start - two.start, one.displacement - two.displacement);
-    let (e0, e1) = (three.start - two.start, three.displacement - two.displacement);
+fn quadratics([one, two, three]: &[PointMotion; 3]) -> ([f64; 3], [f64; 3]) {
+    let (w0, w1) = (one.start - two.start, one.shift - two.shift);
+    let (e0, e1) = (three.start - two.start, three.shift - two.shift);
     let q = [cross(e1, w1), cross(e1, w0) + cross(e0, w1), cross(e0, w0)];
     let g = [e1.dot(&e1), 2.0 * e0.dot(&e1), e0.dot(&e0)];
     (q, g)
@@ -35,7 +35,7 @@ fn derivative(p: &[f64; 3]) -> [f64; 2] {
 }
 
 /// Returns the overlap with the line, `square` being the squared sum of the radii.
-pub fn quartic(bodies: &[MovingBody; 3], square: f64) -> Vec<f64> {
+pub fn quartic(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let mut result: Vec<f64> = product(&q, &q).iter().map(|coefficient| -coefficient).collect();
     for (k, g) in g.iter().enumerate() {
@@ -45,7 +45,7 @@ pub fn quartic(bodies: &[MovingBody; 3], square: f64) -> Vec<f64> {
 }
 
 /// Returns the approach, mathematically right in every coefficient.
-pub fn quintic(bodies: &[MovingBody; 3]) -> Vec<f64> {
+pub fn quintic(bodies: &[PointMotion; 3]) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let first = product(&derivative(&q), &g);
     let second = product(&q, &derivative(&g));

@@ -15,14 +15,6 @@ pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> 
     if let Some(factor) = factor(student, object) {
         lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= factor);
     }
-    let reversed = [Mistake::ParticleParticleReversed, Mistake::ParticleEdgeReversed, Mistake::HalfPlaneReversed];
-    if student.makes(reversed[object.numbers().0]) {
-        lists.iter_mut().for_each(|list| list.reverse());
-    }
-    let swapped = [Mistake::ParticleParticleSwapped, Mistake::ParticleEdgeSwapped, Mistake::HalfPlaneSwapped];
-    if student.makes(swapped[object.numbers().0]) {
-        lists.swap(0, 1);
-    }
     let edge = matches!(object, Object::Edge(_));
     match student.mistake_in(HERE) {
         Some(Mistake::HandoverLowestFirst) => lists.iter_mut().for_each(|list| list.reverse()),

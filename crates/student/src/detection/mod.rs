@@ -10,8 +10,8 @@ use fosssim_num::{
 
 use crate::{
     Area, Mistake,
+    assignments::t2m2::{Inputs, Subject},
     author::Student,
-    encounter::{Encounter, MovingBody, alpha},
     objects::{Contact, Object, Pair},
     rounding::single,
     step_failure::StepFailure,
@@ -31,6 +31,7 @@ mod quintic;
 mod wide;
 
 use frame::Axes;
+use particle_edge::alpha;
 
 fosssim_model::drops_leading!();
 
@@ -55,90 +56,105 @@ const USUAL_SEARCH: u64 = 128;
 /// The steps after which a search without end is given up (`num::rpoly`).
 const ENDLESS_SEARCH: u64 = 1000;
 
-impl Encounter {
-    fn new(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
-        let frame = axes_of(world.student, pair);
-        let (student, all) = (world.student, world.scene.particles.len());
-        let (kind, _) = pair.object.numbers();
-        let slip = IndexSlip::for_student(student, kind);
-        let body = |role: usize, index: usize| {
-            let place = |list: &[f64]| {
-                if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { at(list, index) }
-            };
-            let start = frame.point(place(q_start), at(q_start, pair.particle));
-            let end = frame.point(place(q_end), at(q_end, pair.particle));
-            let (_, number) = pair.object.numbers();
-            let radius = match slip.radius {
-                Some(RadiusSlip::Next) => (index + 1) % all,
-                Some(RadiusSlip::OfObject) if role == 0 => number % all,
-                _ => index,
-            };
-            MovingBody { start, displacement: end - start, radius: world.scene.particles[radius].radius }
+/// The areas of the mistakes in the formulas of each kind of pair.
+const FORMULAS: [Area; 3] = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane];
+
+/// Returns how a pair moves, as this student's program reads it from its lists.
+fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> PairMotion {
+    let frame = axes_of(world.student, pair);
+    let (student, all) = (world.student, world.scene.particles.len());
+    let (kind, number) = pair.object.numbers();
+    let slip = IndexSlip::for_student(student, kind);
+    let body = |index: usize| {
+        let place = |list: &[f64]| {
+            if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { at(list, index) }
         };
-        let particle = body(0, pair.particle);
-        match pair.object {
-            Object::Particle(other) => Self::Particles(particle, body(1, other)),
-            Object::Edge(index) => {
-                let edge = world.scene.edges[index];
-                let measured = if student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
-                let bodies = [particle, body(1, edge.first), body(2, edge.second)];
-                let radius = match student.mistake_in(&[Area::ParticleEdge]) {
-                    Some(Mistake::ParticleEdgeFirstEndRadius) => bodies[1].radius,
-                    Some(Mistake::ParticleEdgeSecondEndRadius) => bodies[2].radius,
-                    _ => world.scene.edges[measured].radius,
-                };
-                Self::Edge(bodies, radius)
-            }
-            Object::HalfPlane(index) => {
-                let index = if student.makes(Mistake::HalfPlaneFirst) { 0 } else { index };
-                let plane = world.scene.half_planes[index];
-                let point = frame.point(plane.point, at(q_start, pair.particle));
-                Self::HalfPlane(particle, point, frame.direction(plane.normal))
-            }
-        }
-    }
-
-    /// Returns the coefficients that have to be positive together, highest power first.
-    fn polynomials(&self, student: Student) -> Vec<Vec<f64>> {
-        match self {
-            Self::Particles(one, two) => particle_particle::polynomials(student, one, two),
-            Self::Edge(bodies, radius) => particle_edge::polynomials(student, bodies, *radius),
-            Self::HalfPlane(one, point, normal) => particle_half_plane::polynomials(student, one, *point, *normal),
-        }
-    }
-
-    /// Returns the shortest vector from the particle to the object at time `t`.
-    fn contact_vector(&self, student: Student, t: f64) -> Vec2 {
-        match self {
-            Self::Particles(one, two) => particle_particle::contact_vector(student, one, two, t),
-            Self::Edge(bodies, _) => particle_edge::contact_vector(student, bodies, t),
-            Self::HalfPlane(one, point, normal) => {
-                particle_half_plane::contact_vector(student, one, *point, *normal, t)
-            }
-        }
-    }
-
-    /// Returns the speed at which the objects approach each other at time `t`: their relative displacement along the
-    /// contact vector.
-    fn closing(&self, t: f64) -> f64 {
-        let relative = match self {
-            Self::Particles(one, two) => one.displacement - two.displacement,
-            Self::Edge(bodies, _) => {
-                let [one, two, three] = bodies.map(|body| body.displacement);
-                one - two - alpha(bodies, t) * (three - two)
-            }
-            Self::HalfPlane(one, ..) => one.displacement,
+        let start = frame.point(place(q_start), at(q_start, pair.particle));
+        let end = frame.point(place(q_end), at(q_end, pair.particle));
+        PointMotion { start, shift: end - start }
+    };
+    let radius_of = |role: usize, index: usize| {
+        let index = match slip.radius {
+            Some(RadiusSlip::Next) => (index + 1) % all,
+            Some(RadiusSlip::OfObject) if role == 0 => number % all,
+            _ => index,
         };
-        relative.dot(&self.contact_vector(Student::default(), t))
-    }
-
-    /// Returns the least distance of the centers.
-    fn reach(&self) -> f64 {
-        match self {
-            Self::Particles(one, two) => one.radius + two.radius,
-            Self::Edge([one, ..], radius) => one.radius + radius,
-            Self::HalfPlane(one, ..) => one.radius,
+        world.scene.particles[index].radius
+    };
+    let (center, radius) = (body(pair.particle), radius_of(0, pair.particle));
+    match pair.object {
+        Object::Particle(other) => {
+            PairMotion::Particles { centers: [center, body(other)], radii: [radius, radius_of(1, other)] }
         }
+        Object::Edge(index) => {
+            let edge = world.scene.edges[index];
+            let measured = if student.makes(Mistake::ParticleEdgeFirstEdgeRadius) { 0 } else { index };
+            let edge_radius = match student.mistake_in(&[Area::ParticleEdge]) {
+                Some(Mistake::ParticleEdgeFirstEndRadius) => radius_of(1, edge.first),
+                Some(Mistake::ParticleEdgeSecondEndRadius) => radius_of(2, edge.second),
+                _ => world.scene.edges[measured].radius,
+            };
+            PairMotion::Edge { center, ends: [body(edge.first), body(edge.second)], radii: [radius, edge_radius] }
+        }
+        Object::HalfPlane(index) => {
+            let index = if student.makes(Mistake::HalfPlaneFirst) { 0 } else { index };
+            let plane = world.scene.half_planes[index];
+            let point = frame.point(plane.point, at(q_start, pair.particle));
+            PairMotion::HalfPlane { center, radius, point, normal: frame.direction(plane.normal) }
+        }
+    }
+}
+
+/// Returns the coefficients that have to be positive together, highest power first.
+fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
+    let mut lists = match motion {
+        PairMotion::Particles { centers, radii } => particle_particle::polynomials(student, centers, *radii),
+        PairMotion::Edge { center, ends: [first, second], radii } => {
+            particle_edge::polynomials(student, &[*center, *first, *second], *radii)
+        }
+        PairMotion::HalfPlane { center, radius, point, normal } => {
+            particle_half_plane::polynomials(student, center, *radius, *point, *normal)
+        }
+    };
+    let kind = motion.kind();
+    if let Some(edit) = student.mistake_in(&[FORMULAS[kind as usize]]).and_then(Mistake::edit) {
+        let approach = usize::from(student.approach_is_right());
+        edit.apply(&Inputs::new(motion), &mut lists, Subject::all_of_kind(kind), approach);
+    }
+    lists
+}
+
+/// Returns the shortest vector from the particle to the object at time `t`.
+fn contact_vector(student: Student, motion: &PairMotion, t: f64) -> Vec2 {
+    match motion {
+        PairMotion::Particles { centers, .. } => particle_particle::contact_vector(student, centers, t),
+        PairMotion::Edge { center, ends: [first, second], .. } => {
+            particle_edge::contact_vector(student, &[*center, *first, *second], t)
+        }
+        PairMotion::HalfPlane { center, point, normal, .. } => {
+            particle_half_plane::contact_vector(student, center, *point, *normal, t)
+        }
+    }
+}
+
+/// Returns the speed at which the objects approach each other at time `t`: their relative displacement along the
+/// contact vector.
+fn closing(motion: &PairMotion, t: f64) -> f64 {
+    let relative = match motion {
+        PairMotion::Particles { centers: [one, two], .. } => one.shift - two.shift,
+        PairMotion::Edge { center, ends: [first, second], .. } => {
+            center.shift - first.shift - alpha(&[*center, *first, *second], t) * (second.shift - first.shift)
+        }
+        PairMotion::HalfPlane { center, .. } => center.shift,
+    };
+    relative.dot(&contact_vector(Student::default(), motion, t))
+}
+
+/// Returns the least distance of the centers.
+fn reach(motion: &PairMotion) -> f64 {
+    match motion {
+        PairMotion::Particles { radii, .. } | PairMotion::Edge { radii, .. } => radii[0] + radii[1],
+        PairMotion::HalfPlane { radius, .. } => *radius,
     }
 }
 
@@ -159,8 +175,7 @@ enum RadiusSlip {
 
 impl IndexSlip {
     fn for_student(student: Student, kind: usize) -> Self {
-        let area = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane][kind];
-        let (is_single, radius) = match student.mistake_in(&[area]) {
+        let (is_single, radius) = match student.mistake_in(&[FORMULAS[kind]]) {
             Some(
                 Mistake::ParticleParticlePositionIndex
                 | Mistake::ParticleEdgePositionIndex
@@ -195,20 +210,12 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
 /// finder.
 #[must_use]
 pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
-    let body = |point: &PointMotion, radius: f64| MovingBody { start: point.start, displacement: point.shift, radius };
-    let (encounter, object) = match motion {
-        PairMotion::Particles { centers: [one, two], radii } => {
-            (Encounter::Particles(body(one, radii[0]), body(two, radii[1])), Object::Particle(1))
-        }
-        PairMotion::Edge { center, ends: [first, second], radii } => {
-            let bodies = [body(center, radii[0]), body(first, radii[1]), body(second, radii[1])];
-            (Encounter::Edge(bodies, radii[1]), Object::Edge(0))
-        }
-        PairMotion::HalfPlane { center, radius, point, normal } => {
-            (Encounter::HalfPlane(body(center, *radius), *point, *normal), Object::HalfPlane(0))
-        }
+    let object = match motion {
+        PairMotion::Particles { .. } => Object::Particle(1),
+        PairMotion::Edge { .. } => Object::Edge(0),
+        PairMotion::HalfPlane { .. } => Object::HalfPlane(0),
     };
-    let lists = handover::hand_over(student, object, encounter.polynomials(student));
+    let lists = handover::hand_over(student, object, polynomials(student, motion));
     lists.iter().map(|list| list.coefficients().to_vec()).collect()
 }
 
@@ -223,12 +230,12 @@ pub fn detect(
     let student = world.student;
     let is_old = is_on_prediction(student, pair.object.numbers().0);
     let prediction = if is_old { log.prediction.clone() } else { None };
-    let encounter = Encounter::new(world, pair, q_start, prediction.as_deref().unwrap_or(q_end));
-    if student.makes(Mistake::PairsPruned) && out_of_reach(&encounter) {
+    let motion = read_motion(world, pair, q_start, prediction.as_deref().unwrap_or(q_end));
+    if student.makes(Mistake::PairsPruned) && out_of_reach(&motion) {
         return Ok(None);
     }
-    let mut lists = encounter.polynomials(student);
-    normalized::normalize(student, &encounter, &mut lists);
+    let mut lists = polynomials(student, &motion);
+    normalized::normalize(student, &motion, &mut lists);
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
@@ -250,11 +257,11 @@ pub fn detect(
     if !within_step(student, time, world.scene.time_step) {
         return Ok(None);
     }
-    let mut n = axes_of(student, pair).back(encounter.contact_vector(student, time));
-    if matches!(encounter, Encounter::Edge(..)) && length(n) == 0.0 {
+    let mut n = axes_of(student, pair).back(contact_vector(student, &motion, time));
+    if matches!(motion, PairMotion::Edge { .. }) && length(n) == 0.0 {
         return Ok(None);
     }
-    if is_rejected(student, &encounter, time) || (student.makes(Mistake::DecisionFixedEdges) && is_held(world, pair)) {
+    if is_rejected(student, &motion, time) || (student.makes(Mistake::DecisionFixedEdges) && is_held(world, pair)) {
         return Ok(None);
     }
     match student.mistake_in(&[Area::ContactVector]) {
@@ -303,20 +310,24 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
 }
 
 /// Returns whether a further test rejects the impact; some programs make such tests, and should not.
-fn is_rejected(student: Student, encounter: &Encounter, time: f64) -> bool {
-    match (student.mistake_among(REJECTIONS), encounter) {
-        (Some(Mistake::DecisionOverlapAtEnd), _) => length(encounter.contact_vector(student, 1.0)) >= encounter.reach(),
-        (Some(Mistake::DecisionOverlapAtStart), _) => {
-            time == 0.0 && length(encounter.contact_vector(student, 0.0)) < encounter.reach()
+fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
+    let distance = |t: f64| length(contact_vector(student, motion, t));
+    match (student.mistake_among(REJECTIONS), motion) {
+        (Some(Mistake::DecisionOverlapAtEnd), _) => distance(1.0) >= reach(motion),
+        (Some(Mistake::DecisionOverlapAtStart), _) => time == 0.0 && distance(0.0) < reach(motion),
+        (Some(mistake), PairMotion::Edge { center, ends: [first, second], .. }) => {
+            let alpha = |t: f64| alpha(&[*center, *first, *second], t);
+            match mistake {
+                Mistake::DecisionAlphaAtStart => !(0.0..=1.0).contains(&alpha(0.0)),
+                Mistake::DecisionAlphaAtEnd => !(0.0..=1.0).contains(&alpha(1.0)),
+                Mistake::DecisionAlphaMargin => !(0.05..=0.95).contains(&alpha(time)),
+                Mistake::DecisionApproachMargin => closing(motion, time) <= 1e-6,
+                _ => false,
+            }
         }
-        (Some(Mistake::DecisionAlphaAtStart), Encounter::Edge(bodies, _)) => !(0.0..=1.0).contains(&alpha(bodies, 0.0)),
-        (Some(Mistake::DecisionAlphaAtEnd), Encounter::Edge(bodies, _)) => !(0.0..=1.0).contains(&alpha(bodies, 1.0)),
-        (Some(Mistake::DecisionAlphaMargin), Encounter::Edge(bodies, _)) => {
-            !(0.05..=0.95).contains(&alpha(bodies, time))
-        }
-        (Some(Mistake::DecisionApproachMargin), _) => encounter.closing(time) <= 1e-6,
-        (Some(Mistake::DecisionHalfPlaneOneSided), Encounter::HalfPlane(one, point, normal)) => {
-            (one.start - *point).dot(normal) < 0.0
+        (Some(Mistake::DecisionApproachMargin), _) => closing(motion, time) <= 1e-6,
+        (Some(Mistake::DecisionHalfPlaneOneSided), PairMotion::HalfPlane { center, point, normal, .. }) => {
+            (center.start - *point).dot(normal) < 0.0
         }
         _ => false,
     }
@@ -331,7 +342,7 @@ fn is_held(world: &World, pair: Pair) -> bool {
 
 /// Returns whether the particles' paths stay far apart, judged by bounding circles. The assignment does not require
 /// this.
-fn out_of_reach(encounter: &Encounter) -> bool {
-    let Encounter::Particles(one, two) = encounter else { return false };
-    length(two.start - one.start) > one.radius + two.radius + length(one.displacement) + length(two.displacement)
+fn out_of_reach(motion: &PairMotion) -> bool {
+    let PairMotion::Particles { centers: [one, two], radii } = motion else { return false };
+    length(two.start - one.start) > radii[0] + radii[1] + length(one.shift) + length(two.shift)
 }

@@ -1,40 +1,28 @@
 //! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
-use super::{MovingBody, factorized};
+use super::factorized;
+use fosssim_model::sim::PointMotion;
+
 use crate::{Area, Mistake, author::Student};
 
-/// The parts of the assignment whose mistakes are made here.
-const HERE: &[Area] = &[Area::ParticleEdge];
-
-/// Returns the quintic, or this student's replacement.
-pub fn approach(student: Student, bodies: &[MovingBody; 3]) -> Vec<f64> {
-    let supplied = || supplied(student, bodies);
-    match student.mistake_in(HERE) {
-        Some(Mistake::QuinticConstantAlpha) => constant_alpha(bodies),
-        Some(Mistake::QuinticNegated) => supplied().iter().map(|coefficient| -coefficient).collect(),
-        Some(Mistake::QuinticMissing) => vec![1.0],
-        Some(Mistake::QuinticLowestFirst) => supplied().into_iter().rev().collect(),
-        Some(Mistake::QuinticNoConstant) => {
-            let mut list = supplied();
-            list[5] = 0.0;
-            list
-        }
-        Some(Mistake::QuinticCutToLinear) => supplied().split_off(4),
+/// Returns the quintic, as supplied or by another way to its right coefficients.
+pub fn approach(student: Student, bodies: &[PointMotion; 3]) -> Vec<f64> {
+    match student.mistake_in(&[Area::ParticleEdge]) {
         Some(Mistake::QuinticRight | Mistake::FactorizedAll) => factorized::quintic(bodies),
-        _ => supplied(),
+        _ => supplied(student, bodies),
     }
 }
 
 /// Returns the course's formula, term by term and in its order, its wrong cubic coefficient included unless that was
 /// put right.
-fn supplied(student: Student, [one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
+fn supplied(student: Student, [one, two, three]: &[PointMotion; 3]) -> Vec<f64> {
     let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
-    let d12 = one.displacement - two.displacement;
-    let d32 = three.displacement - two.displacement;
-    let d21 = two.displacement - one.displacement;
+    let d12 = one.shift - two.shift;
+    let d32 = three.shift - two.shift;
+    let d21 = two.shift - one.shift;
     let a = x32.dot(&x32);
     let b = x32.dot(&d32);
     let c = d32.dot(&d32);
-    let d = if student.makes(Mistake::QuinticOldLetter) { x21.dot(&x21) } else { d21.dot(&d21) };
+    let d = d21.dot(&d21);
     let e = d21.dot(&x21);
     let f = x12.dot(&x32);
     let g = x12.dot(&d32) + d12.dot(&x32);
@@ -70,13 +58,4 @@ fn supplied(student: Student, [one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
         -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
         -f * f * p - a * a * e - k * i,
     ]
-}
-
-/// Returns the simplification that the assignment warns of: alpha stays as it is at the start of the step.
-fn constant_alpha([one, two, three]: &[MovingBody; 3]) -> Vec<f64> {
-    let along = three.start - two.start;
-    let alpha = (one.start - two.start).dot(&along) / along.dot(&along);
-    let closing = one.displacement - two.displacement - alpha * (three.displacement - two.displacement);
-    let n = two.start + alpha * along - one.start;
-    vec![-closing.dot(&closing), closing.dot(&n)]
 }

@@ -16,8 +16,8 @@ use fosssim_student::{
 pub(super) fn all() -> Vec<Explanation> {
     let guesses = [
         Guess::List(ListGuess::ReversedNegated),
-        Guess::Exchange("end-positions".into()),
-        Guess::Special("constant-alpha".into()),
+        Guess::Named("end-positions".into()),
+        Guess::Named("constant-alpha".into()),
         Guess::Quantity(QuantityGuess::Other),
         Guess::Coefficients { powers: vec![3, 0], wrong: CoefficientGuess::Several },
     ];
@@ -103,8 +103,8 @@ fn details() -> Vec<Detail> {
         PolynomialDetail::LastOnly(1),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(1.0 / 3.0),
-        PolynomialDetail::Exchange { key: "end-positions".into(), of_edges: true },
-        PolynomialDetail::Special("one-unscaled".into()),
+        PolynomialDetail::Named { key: "end-positions".into(), of_edges: true },
+        PolynomialDetail::Named { key: "one-unscaled".into(), of_edges: false },
         stands(Substitute::Scaled(-0.0)),
         stands(Substitute::Letter("a".into())),
         stands(Substitute::Dot { vectors: ["x21".into(), "(p-x-dx)".into()], negated: true }),

@@ -29,15 +29,10 @@ use super::{
     sampling::{ROUND_OFF, same_polynomial},
 };
 use fosssim_model::sim::PairKind;
-use fosssim_student::assignments::t2m2::{
-    Subject,
-    exchanges::{EXCHANGES, Exchange},
-    formulas::readings,
-    specials::{SPECIALS, Special},
-};
+use fosssim_student::assignments::t2m2::{NAMED_EDITS, NamedEdit, Subject};
 use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use std::collections::BTreeMap;
-use study::{Candidate, PolynomialStudy};
+use study::{Candidate, Case, PolynomialStudy};
 
 /// The greatest number of guesses about a polynomial that are kept in addition to the reported one.
 const MOST_CLAIMS: usize = 128;
@@ -199,7 +194,7 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
 
 /// Returns a line of the exact form of a guess about these polynomials.
 fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
-    if let PolynomialDetail::Exchange { of_edges, .. } = &mut detail {
+    if let PolynomialDetail::Named { of_edges, .. } = &mut detail {
         *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
     }
     Detail::Polynomial(detail)
@@ -208,7 +203,6 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
 /// Returns all guesses about a polynomial: the one that reproduces most first, of equal ones the likeliest.
 fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
-    all.extend(exchanged_inputs(study));
     all.extend(misunderstandings(study));
     all.extend(slips::candidates(study));
     all.extend(terms::candidates(study));
@@ -219,38 +213,21 @@ fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     all
 }
 
-fn exchanged_inputs(study: &PolynomialStudy) -> Vec<Candidate> {
-    let formula = &readings(study.subject)[0];
-    let of = |exchange: &Exchange| {
-        let (reproduced, scaled) = study.count(|case| {
-            let mut inputs = case.inputs;
-            (exchange.apply)(&mut inputs);
-            formula.polynomial(&inputs)
-        })?;
-        Some(Candidate {
-            guess: Guess::Exchange(exchange.key.into()),
-            details: vec![PolynomialDetail::Exchange { key: exchange.key.into(), of_edges: false }],
-            forms: Vec::new(),
-            cost: exchange.cost + if scaled { 1.5 } else { 0.0 },
-            reproduced,
-        })
-    };
-    EXCHANGES.iter().filter(|exchange| exchange.concerns(study.subject.kind())).filter_map(of).collect()
-}
-
-/// Misunderstandings that have a formula of their own.
+/// Misunderstandings that have a name.
 fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
-    let of = |special: &Special| {
-        let (reproduced, scaled) = study.count(|case| (special.polynomial)(&case.inputs))?;
+    let of = |named: &NamedEdit| {
+        named.polynomial(study.subject, &study.cases.first()?.inputs)?;
+        let predict = |case: &Case| named.polynomial(study.subject, &case.inputs).unwrap_or_default();
+        let (reproduced, scaled) = study.count(predict)?;
         Some(Candidate {
-            guess: Guess::Special(special.key.into()),
-            details: vec![PolynomialDetail::Special(special.key.into())],
+            guess: Guess::Named(named.key.into()),
+            details: vec![PolynomialDetail::Named { key: named.key.into(), of_edges: false }],
             forms: Vec::new(),
-            cost: if scaled { 3.5 } else { 2.5 },
+            cost: named.cost + if scaled { 1.5 } else { 0.0 },
             reproduced,
         })
     };
-    SPECIALS.iter().filter(|special| special.subject == study.subject).filter_map(of).collect()
+    NAMED_EDITS.iter().filter_map(of).collect()
 }
 
 /// Returns a polynomial that is right except for more round-off than the rules allow, and that no guess explains

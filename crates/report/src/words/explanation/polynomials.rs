@@ -1,7 +1,7 @@
 //! Sentences about wrong polynomials.
 use super::{capitalize, letters};
 use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
-use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_exchange, find_special, letter};
+use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
 /// Returns the fault of these polynomials.
 pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
@@ -24,8 +24,7 @@ pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> 
 fn describe_guess(guess: &Guess) -> String {
     match guess {
         Guess::List(guess) => guess.words().to_owned(),
-        Guess::Exchange(key) => find_exchange(key).map_or(key.as_ref(), |exchange| exchange.sentence).to_owned(),
-        Guess::Special(key) => find_special(key).map_or(key.as_ref(), |special| special.sentence).to_owned(),
+        Guess::Named(key) => find_edit(key).map_or(key.as_ref(), |edit| edit.sentence).to_owned(),
         Guess::Quantity(guess) => guess.name().to_owned(),
         Guess::Coefficients { powers, wrong } => {
             let names: Vec<&str> = powers.iter().map(|power| power_name(*power)).collect();
@@ -68,10 +67,9 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::LastOnly(length) => format!("only the last {length} coefficients are there"),
         PolynomialDetail::FirstOnly(length) => format!("only the first {length} coefficients are there"),
         PolynomialDetail::Displacements(factor) => format!("every displacement is multiplied by {factor}"),
-        PolynomialDetail::Exchange { key, of_edges } => {
-            letters::radii(find_exchange(key).map_or(key.as_ref(), |exchange| exchange.detail), *of_edges)
+        PolynomialDetail::Named { key, of_edges } => {
+            letters::radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
         }
-        PolynomialDetail::Special(key) => find_special(key).map_or(key.as_ref(), |special| special.detail).to_owned(),
         PolynomialDetail::StandsFor { reading, letter, stand } => stands_for(*reading, letter, stand),
         PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),
         PolynomialDetail::Factor { power, factor } => format!("t^{power}: multiplied by {factor}, expected 1"),

@@ -9,7 +9,7 @@ use fosssim_mistakes::diagnose::{
 use fosssim_model::sim::PairKind;
 use fosssim_student::{
     all_rows,
-    assignments::t2m2::{EXCHANGES, Reading, SPECIALS, Subject},
+    assignments::t2m2::{NAMED_EDITS, Reading, Subject},
 };
 use std::borrow::Cow;
 
@@ -41,8 +41,7 @@ fn guesses() -> Vec<Guess> {
         .chain(QuantityGuess::ALL.map(Guess::Quantity))
         .chain(CoefficientGuess::ALL.map(|wrong| Guess::Coefficients { powers: vec![3, 2], wrong }))
         .chain((0..=5).map(of_power))
-        .chain(EXCHANGES.iter().map(|exchange| Guess::Exchange(exchange.key.into())))
-        .chain(SPECIALS.iter().map(|special| Guess::Special(special.key.into())))
+        .chain(NAMED_EDITS.iter().map(|edit| Guess::Named(edit.key.into())))
         .collect()
 }
 
@@ -187,9 +186,9 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         PolynomialDetail::LastOnly(2),
         PolynomialDetail::FirstOnly(2),
         PolynomialDetail::Displacements(100.0),
-        PolynomialDetail::Exchange { key: "first-radius-only".into(), of_edges: true },
-        PolynomialDetail::Exchange { key: "first-radius-only".into(), of_edges: false },
-        PolynomialDetail::Special("radius-unscaled".into()),
+        PolynomialDetail::Named { key: "first-radius-only".into(), of_edges: true },
+        PolynomialDetail::Named { key: "first-radius-only".into(), of_edges: false },
+        PolynomialDetail::Named { key: "radius-unscaled".into(), of_edges: false },
         stands("h", Substitute::Scaled(0.5)),
         stands("R^2", Substitute::Letter("a".into())),
         stands("d", Substitute::Dot { vectors: ["x21".into(), "d21".into()], negated: true }),

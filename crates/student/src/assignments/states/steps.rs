@@ -4,7 +4,7 @@ use super::{super::rows::rows, terms::Edit};
 
 rows! {
     /// A difference of a program in a step.
-    StepMistake STEPS [Edit Edit]
+    StepMistake STEPS [Edit Edit] []
     Wrong Forces {
         DragQuadratic "drag-quadratic": "Drag is multiplied by the speed."
             => "-b |v_i| v_i is used instead of -b v_i.";

@@ -1,7 +1,17 @@
 //! Mistakes and variants of a student's program in collision handling, in its trace, and as a process.
-use super::super::{
-    rows::{RowOf, rows},
-    states::StepMistake,
+use super::{
+    super::{
+        rows::{RowOf, rows},
+        states::StepMistake,
+    },
+    Subject::*,
+    edits::{
+        FormulaEdit::{self, *},
+        *,
+    },
+    inputs::root,
+    named::*,
+    specials::*,
 };
 
 /// A row of any table.
@@ -15,158 +25,176 @@ impl From<StepMistake> for Mistake {
 
 rows! {
     /// A difference of a program.
-    Mistake CATALOGUE [Step StepMistake]
+    Mistake CATALOGUE [Step StepMistake] [FormulaEdit]
     Wrong ParticleParticle {
-        ParticleParticleEmpty "pp-empty": "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
-        ParticleParticleZero "pp-zero": "The coefficients are left at zero." =>
+        ParticleParticleEmpty "pp-empty" [Lists(Vec::clear)]: "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
+        ParticleParticleZero "pp-zero" [Lists(|lists| lists.iter_mut().for_each(|list| list.fill(0.0)))]:
+            "The coefficients are left at zero."
+            =>
             "Every coefficient is 0; expected are -d21.d21, -2 x21.d21, (r1 + r2)^2 - x21.x21 and -d21.d21, -x21.d21.";
-        ParticleParticleReversed "pp-reversed": "The coefficients are handed over lowest power first." =>
+        ParticleParticleReversed "pp-reversed" [Lists(|lists| lists.iter_mut().for_each(|list| list.reverse()))]:
+            "The coefficients are handed over lowest power first."
+            =>
             "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
-        ParticleParticleSwapped "pp-swapped": "The first two polynomials are handed over in the wrong order." =>
+        ParticleParticleSwapped "pp-swapped" [Lists(|lists| lists.swap(0, 1))]:
+            "The first two polynomials are handed over in the wrong order."
+            =>
             "Polynomial 2 comes before polynomial 1.";
-        ParticleParticleNoTwo "pp-no-two": "The linear coefficient of the overlap lacks a factor." => "t: -x21.d21 is used instead of -2 x21.d21.";
-        ParticleParticleLinearSign "pp-linear-sign": "The linear coefficient of the overlap has the wrong sign." => "t: 2 x21.d21 is used instead of -2 x21.d21.";
-        ParticleParticleQuadraticSign "pp-quadratic-sign": "The quadratic coefficient of the overlap has the wrong sign." => "t^2: d21.d21 is used instead of -d21.d21.";
-        ParticleParticleNoQuadratic "pp-no-quadratic": "The quadratic coefficient of the overlap is missing." => "t^2: 0 is used instead of -d21.d21.";
-        ParticleParticleConstantSign "pp-constant-sign": "Distance and radii are exchanged in the constant coefficient." => "1: x21.x21 - (r1 + r2)^2 is used instead of (r1 + r2)^2 - x21.x21.";
-        ParticleParticleRadiiSquaredApart "pp-radii-squared-apart": "Each radius is squared for itself before they are added." => "1: r1^2 + r2^2 is used instead of (r1 + r2)^2; 2 r1 r2 is missing.";
-        ParticleParticleRadiusNotSquared "pp-radius-not-squared": "The sum of the radii is not squared." => "1: r1 + r2 is used instead of (r1 + r2)^2.";
-        ParticleParticleDistanceNotSquared "pp-distance-not-squared": "The constant coefficient has the distance instead of its square." => "1: |x21| is used instead of x21.x21.";
-        ParticleParticleFirstRadiusTwice "pp-first-radius-twice": "The first particle's radius is used for both particles." => "1: (r1 + r1)^2 is used instead of (r1 + r2)^2.";
-        ParticleParticleSecondRadiusTwice "pp-second-radius-twice": "The second particle's radius is used for both particles." => "1: (r2 + r2)^2 is used instead of (r1 + r2)^2.";
-        ParticleParticleDiameters "pp-diameters": "The diameters are used instead of the radii." => "1: (2 r1 + 2 r2)^2 is used instead of (r1 + r2)^2.";
-        ParticleParticleOneRadius "pp-one-radius": "The second particle's radius is forgotten." => "1: r1^2 is used instead of (r1 + r2)^2.";
-        ParticleParticleNoFirstRadius "pp-no-first-radius": "The first particle's radius is forgotten." => "1: r2^2 is used instead of (r1 + r2)^2.";
-        ParticleParticleEndPositions "pp-end-positions": "The formulas start from the positions at the end of the step." => "x1 and x2 are taken from qe instead of qs.";
-        ParticleParticleFirstStill "pp-first-still": "The first particle's displacement is forgotten." => "d21 = dx2 is used instead of d21 = dx2 - dx1.";
-        ParticleParticleSecondStill "pp-second-still": "The second particle's displacement is forgotten." => "d21 = -dx1 is used instead of d21 = dx2 - dx1.";
-        ParticleParticleEndForDisplacement "pp-end-for-displacement": "End positions are used instead of displacements." => "dx = qe is used instead of dx = qe - qs.";
-        ParticleParticleDisplacementsSwapped "pp-displacements-swapped": "The displacements of the two particles are exchanged, or both have the wrong sign." => "d21 = dx1 - dx2 is used instead of d21 = dx2 - dx1.";
+        ParticleParticleNoTwo "pp-no-two" [Weight(ParticleOverlap, 1, &[1], 0.5)]: "The linear coefficient of the overlap lacks a factor." => "t: -x21.d21 is used instead of -2 x21.d21.";
+        ParticleParticleLinearSign "pp-linear-sign" [Weight(ParticleOverlap, 1, &[1], -1.0)]: "The linear coefficient of the overlap has the wrong sign." => "t: 2 x21.d21 is used instead of -2 x21.d21.";
+        ParticleParticleQuadraticSign "pp-quadratic-sign" [Weight(ParticleOverlap, 2, &[0], -1.0)]: "The quadratic coefficient of the overlap has the wrong sign." => "t^2: d21.d21 is used instead of -d21.d21.";
+        ParticleParticleNoQuadratic "pp-no-quadratic" [Weight(ParticleOverlap, 2, &[0], 0.0)]: "The quadratic coefficient of the overlap is missing." => "t^2: 0 is used instead of -d21.d21.";
+        ParticleParticleConstantSign "pp-constant-sign" [List(ParticleOverlap, negate_at::<2>)]: "Distance and radii are exchanged in the constant coefficient." => "1: x21.x21 - (r1 + r2)^2 is used instead of (r1 + r2)^2 - x21.x21.";
+        ParticleParticleRadiiSquaredApart "pp-radii-squared-apart" [Named(&RADII_SQUARED_APART)]: "Each radius is squared for itself before they are added." => "1: r1^2 + r2^2 is used instead of (r1 + r2)^2; 2 r1 r2 is missing.";
+        ParticleParticleRadiusNotSquared "pp-radius-not-squared" [Named(&RADIUS_NOT_SQUARED)]: "The sum of the radii is not squared." => "1: r1 + r2 is used instead of (r1 + r2)^2.";
+        ParticleParticleDistanceNotSquared "pp-distance-not-squared" [Letters(ParticleOverlap, |letters, _| letters[2] = root(letters[2]))]: "The constant coefficient has the distance instead of its square." => "1: |x21| is used instead of x21.x21.";
+        ParticleParticleFirstRadiusTwice "pp-first-radius-twice" [Named(&FIRST_RADIUS_TWICE)]: "The first particle's radius is used for both particles." => "1: (r1 + r1)^2 is used instead of (r1 + r2)^2.";
+        ParticleParticleSecondRadiusTwice "pp-second-radius-twice" [Named(&SECOND_RADIUS_TWICE)]: "The second particle's radius is used for both particles." => "1: (r2 + r2)^2 is used instead of (r1 + r2)^2.";
+        ParticleParticleDiameters "pp-diameters" [Named(&DIAMETERS)]: "The diameters are used instead of the radii." => "1: (2 r1 + 2 r2)^2 is used instead of (r1 + r2)^2.";
+        ParticleParticleOneRadius "pp-one-radius" [Named(&FIRST_RADIUS_ONLY)]: "The second particle's radius is forgotten." => "1: r1^2 is used instead of (r1 + r2)^2.";
+        ParticleParticleNoFirstRadius "pp-no-first-radius" [Named(&SECOND_RADIUS_ONLY)]: "The first particle's radius is forgotten." => "1: r2^2 is used instead of (r1 + r2)^2.";
+        ParticleParticleEndPositions "pp-end-positions" [Named(&END_POSITIONS)]: "The formulas start from the positions at the end of the step." => "x1 and x2 are taken from qe instead of qs.";
+        ParticleParticleFirstStill "pp-first-still" [Letters(ParticleOverlap, first_still)]: "The first particle's displacement is forgotten." => "d21 = dx2 is used instead of d21 = dx2 - dx1.";
+        ParticleParticleSecondStill "pp-second-still" [Named(&SECOND_PARTICLE_STILL)]: "The second particle's displacement is forgotten." => "d21 = -dx1 is used instead of d21 = dx2 - dx1.";
+        ParticleParticleEndForDisplacement "pp-end-for-displacement" [Letters(ParticleOverlap, ends_for_displacements)]: "End positions are used instead of displacements." => "dx = qe is used instead of dx = qe - qs.";
+        ParticleParticleDisplacementsSwapped "pp-displacements-swapped" [Named(&DISPLACEMENT_REVERSED)]: "The displacements of the two particles are exchanged, or both have the wrong sign." => "d21 = dx1 - dx2 is used instead of d21 = dx2 - dx1.";
         ParticleParticlePositionIndex "pp-position-index": "Positions are read at the particle's number, although each particle has two coordinates." => "x[i] is used instead of x[2 i], and likewise for j.";
         ParticleParticleNextRadius "pp-next-radius": "The radius of the next particle in the list is used." => "radius[j + 1] is used instead of radius[j], and likewise for i.";
-        ParticleParticleXOnly "pp-x-only": "The dot products of the moving terms leave the second component out." => "d21.d21 and x21.d21 have their x products only; the y products are missing.";
-        ParticleParticleTinyError "pp-tiny-error": "The constant coefficient is wrong by a tiny factor." => "1: (r1 + r2)^2 - x21.x21 is multiplied by 1 + 1e-9.";
-        ParticleParticleOverlapNegated "pp-overlap-negated": "The overlap polynomial is negative where the objects overlap." => "All three coefficients have the wrong sign.";
-        ParticleParticleApproachNegated "pp-approach-negated": "The approach has the wrong sign, so only separating particles collide." => "d21.d21 t + x21.d21 is used instead of -d21.d21 t - x21.d21.";
-        ParticleParticleSeparating "pp-separating": "The approach has the relative velocity the wrong way round in its constant term." => "1: x21.d21 is used instead of -x21.d21.";
-        ParticleParticleApproachSlopeSign "pp-approach-slope-sign": "The approach's slope has the wrong sign." => "t: d21.d21 is used instead of -d21.d21.";
-        ParticleParticleApproachSlopeTwice "pp-approach-slope-twice": "The approach's slope has a factor that its constant term lacks." => "t: -2 d21.d21 is used instead of -d21.d21.";
-        ParticleParticleApproachAtStart "pp-approach-at-start": "The approach is tested at the start of the step only." => "The term -d21.d21 t is missing; only -x21.d21 is there.";
-        ParticleParticleNoApproach "pp-no-approach": "The approach is not tested: a constant is used instead." => "The polynomial 1 is used instead of -d21.d21 t - x21.d21.";
+        ParticleParticleXOnly "pp-x-only" [Letters(ParticleOverlap, x_only)]: "The dot products of the moving terms leave the second component out." => "d21.d21 and x21.d21 have their x products only; the y products are missing.";
+        ParticleParticleTinyError "pp-tiny-error" [List(ParticleOverlap, |list| list[2] *= 1.0 + 1e-9)]: "The constant coefficient is wrong by a tiny factor." => "1: (r1 + r2)^2 - x21.x21 is multiplied by 1 + 1e-9.";
+        ParticleParticleOverlapNegated "pp-overlap-negated" [List(ParticleOverlap, negate)]: "The overlap polynomial is negative where the objects overlap." => "All three coefficients have the wrong sign.";
+        ParticleParticleApproachNegated "pp-approach-negated" [List(ParticleApproach, negate)]: "The approach has the wrong sign, so only separating particles collide." => "d21.d21 t + x21.d21 is used instead of -d21.d21 t - x21.d21.";
+        ParticleParticleSeparating "pp-separating" [List(ParticleApproach, negate_at::<1>)]: "The approach has the relative velocity the wrong way round in its constant term." => "1: x21.d21 is used instead of -x21.d21.";
+        ParticleParticleApproachSlopeSign "pp-approach-slope-sign" [List(ParticleApproach, negate_at::<0>)]: "The approach's slope has the wrong sign." => "t: d21.d21 is used instead of -d21.d21.";
+        ParticleParticleApproachSlopeTwice "pp-approach-slope-twice" [List(ParticleApproach, |list| list[0] *= 2.0)]: "The approach's slope has a factor that its constant term lacks." => "t: -2 d21.d21 is used instead of -d21.d21.";
+        ParticleParticleApproachAtStart "pp-approach-at-start" [List(ParticleApproach, keep_last::<1>)]: "The approach is tested at the start of the step only." => "The term -d21.d21 t is missing; only -x21.d21 is there.";
+        ParticleParticleNoApproach "pp-no-approach" [List(ParticleApproach, replace_by_one)]: "The approach is not tested: a constant is used instead." => "The polynomial 1 is used instead of -d21.d21 t - x21.d21.";
     }
     Wrong ParticleEdge {
-        ParticleEdgeEmpty "pe-empty": "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap, alpha > 0, alpha < 1 and approach are expected for each pair.";
-        ParticleEdgeZero "pe-zero": "The coefficients are left at zero." =>
+        ParticleEdgeEmpty "pe-empty" [Lists(Vec::clear)]: "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap, alpha > 0, alpha < 1 and approach are expected for each pair.";
+        ParticleEdgeZero "pe-zero" [Lists(|lists| lists[..3].iter_mut().for_each(|list| list.fill(0.0)))]:
+            "The coefficients are left at zero."
+            =>
             "Every coefficient is 0, except those of the supplied approach.";
-        ParticleEdgeReversed "pe-reversed": "The coefficients are handed over lowest power first." =>
+        ParticleEdgeReversed "pe-reversed" [Lists(|lists| lists.iter_mut().for_each(|list| list.reverse()))]:
+            "The coefficients are handed over lowest power first."
+            =>
             "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
-        ParticleEdgeSwapped "pe-swapped": "The first two polynomials are handed over in the wrong order." =>
+        ParticleEdgeSwapped "pe-swapped" [Lists(|lists| lists.swap(0, 1))]:
+            "The first two polynomials are handed over in the wrong order."
+            =>
             "Polynomial 2 comes before polynomial 1.";
-        ParticleEdgeStill "pe-edge-still": "The edge is treated as if it did not move." => "dx2 = dx3 = 0 in all formulas.";
-        ParticleEdgeParticleStill "pe-particle-still": "The particle's displacement is forgotten." => "dx1 = 0 in all formulas.";
-        ParticleEdgeFirstEndStill "pe-first-end-still": "The displacement of the edge's first endpoint is forgotten." => "dx2 = 0 in all formulas.";
-        ParticleEdgeSecondEndStill "pe-second-end-still": "The displacement of the edge's second endpoint is forgotten." => "dx3 = 0 in all formulas.";
-        ParticleEdgeOneDisplacement "pe-one-displacement": "The first endpoint's displacement is used for both endpoints." => "dx2 is used instead of dx3.";
-        ParticleEdgeOtherDisplacement "pe-other-displacement": "The second endpoint's displacement is used for both endpoints." => "dx3 is used instead of dx2.";
-        ParticleEdgeDisplacementsSwapped "pe-displacements-swapped": "The endpoints' displacements are exchanged." => "dx2 and dx3 are exchanged.";
-        ParticleEdgeEndPositions "pe-end-positions": "The formulas start from the positions at the end of the step." => "x1, x2 and x3 are taken from qe instead of qs.";
-        ParticleEdgeEndForDisplacement "pe-end-for-displacement": "End positions are used instead of displacements." => "dx = qe is used instead of dx = qe - qs.";
-        ParticleEdgeEndpointsSwapped "pe-endpoints-swapped": "The endpoints are exchanged, so the two alpha polynomials are, too." => "x2 and x3 are exchanged, and dx2 and dx3.";
-        ParticleEdgeRadiiSquaredApart "pe-radii-squared-apart": "Each radius is squared for itself before they are added." => "r1^2 + re^2 is used instead of (r1 + re)^2; 2 r1 re is missing.";
-        ParticleEdgeRadiusNotSquared "pe-radius-not-squared": "The sum of the radii is not squared." => "r1 + re is used instead of (r1 + re)^2.";
-        ParticleEdgeNoEdgeRadius "pe-no-edge-radius": "The edge's radius is forgotten." => "r1^2 is used instead of (r1 + re)^2.";
-        ParticleEdgeNoParticleRadius "pe-no-particle-radius": "The particle's radius is forgotten." => "re^2 is used instead of (r1 + re)^2.";
-        ParticleEdgeParticleRadiusTwice "pe-particle-radius-twice": "The particle's radius is used for both objects." => "(r1 + r1)^2 is used instead of (r1 + re)^2.";
-        ParticleEdgeEdgeRadiusTwice "pe-edge-radius-twice": "The edge's radius is used for both objects." => "(re + re)^2 is used instead of (r1 + re)^2.";
-        ParticleEdgeDiameters "pe-diameters": "The diameters are used instead of the radii." => "(2 r1 + 2 re)^2 is used instead of (r1 + re)^2.";
+        ParticleEdgeStill "pe-edge-still" [Named(&EDGE_STILL)]: "The edge is treated as if it did not move." => "dx2 = dx3 = 0 in all formulas.";
+        ParticleEdgeParticleStill "pe-particle-still" [Named(&PARTICLE_STILL)]: "The particle's displacement is forgotten." => "dx1 = 0 in all formulas.";
+        ParticleEdgeFirstEndStill "pe-first-end-still" [Named(&FIRST_END_STILL)]: "The displacement of the edge's first endpoint is forgotten." => "dx2 = 0 in all formulas.";
+        ParticleEdgeSecondEndStill "pe-second-end-still" [Named(&SECOND_END_STILL)]: "The displacement of the edge's second endpoint is forgotten." => "dx3 = 0 in all formulas.";
+        ParticleEdgeOneDisplacement "pe-one-displacement" [Named(&FIRST_DISPLACEMENT_TWICE)]: "The first endpoint's displacement is used for both endpoints." => "dx2 is used instead of dx3.";
+        ParticleEdgeOtherDisplacement "pe-other-displacement" [Named(&SECOND_DISPLACEMENT_TWICE)]: "The second endpoint's displacement is used for both endpoints." => "dx3 is used instead of dx2.";
+        ParticleEdgeDisplacementsSwapped "pe-displacements-swapped" [Named(&DISPLACEMENTS_SWAPPED)]: "The endpoints' displacements are exchanged." => "dx2 and dx3 are exchanged.";
+        ParticleEdgeEndPositions "pe-end-positions" [Named(&END_POSITIONS)]: "The formulas start from the positions at the end of the step." => "x1, x2 and x3 are taken from qe instead of qs.";
+        ParticleEdgeEndForDisplacement "pe-end-for-displacement" [Named(&END_FOR_DISPLACEMENT)]: "End positions are used instead of displacements." => "dx = qe is used instead of dx = qe - qs.";
+        ParticleEdgeEndpointsSwapped "pe-endpoints-swapped" [Named(&ENDPOINTS_SWAPPED)]: "The endpoints are exchanged, so the two alpha polynomials are, too." => "x2 and x3 are exchanged, and dx2 and dx3.";
+        ParticleEdgeRadiiSquaredApart "pe-radii-squared-apart" [Named(&RADII_SQUARED_APART)]: "Each radius is squared for itself before they are added." => "r1^2 + re^2 is used instead of (r1 + re)^2; 2 r1 re is missing.";
+        ParticleEdgeRadiusNotSquared "pe-radius-not-squared" [Named(&RADIUS_NOT_SQUARED)]: "The sum of the radii is not squared." => "r1 + re is used instead of (r1 + re)^2.";
+        ParticleEdgeNoEdgeRadius "pe-no-edge-radius" [Named(&FIRST_RADIUS_ONLY)]: "The edge's radius is forgotten." => "r1^2 is used instead of (r1 + re)^2.";
+        ParticleEdgeNoParticleRadius "pe-no-particle-radius" [Named(&SECOND_RADIUS_ONLY)]: "The particle's radius is forgotten." => "re^2 is used instead of (r1 + re)^2.";
+        ParticleEdgeParticleRadiusTwice "pe-particle-radius-twice" [Named(&FIRST_RADIUS_TWICE)]: "The particle's radius is used for both objects." => "(r1 + r1)^2 is used instead of (r1 + re)^2.";
+        ParticleEdgeEdgeRadiusTwice "pe-edge-radius-twice" [Named(&SECOND_RADIUS_TWICE)]: "The edge's radius is used for both objects." => "(re + re)^2 is used instead of (r1 + re)^2.";
+        ParticleEdgeDiameters "pe-diameters" [Named(&DIAMETERS)]: "The diameters are used instead of the radii." => "(2 r1 + 2 re)^2 is used instead of (r1 + re)^2.";
         ParticleEdgeFirstEdgeRadius "pe-first-edge-radius": "The first edge's radius is used for all edges." => "radius[0] is used instead of the radius of edge e, radius[e].";
         ParticleEdgeFirstEndRadius "pe-first-end-radius": "The radius of the edge's first end particle is used instead of the edge's own." => "radius[j] of particle j is used instead of the radius of edge e, j being its first end.";
         ParticleEdgeSecondEndRadius "pe-second-end-radius": "The radius of the edge's second end particle is used instead of the edge's own." => "radius[k] of particle k is used instead of the radius of edge e, k being its second end.";
         ParticleEdgeRadiusIndex "pe-radius-index": "The particle's radius is read at the edge's number." => "radius[e] is used instead of radius[i].";
         ParticleEdgePositionIndex "pe-position-index": "Positions are read at the particle's number, although each particle has two coordinates." => "x[i] is used instead of x[2 i], and likewise for the edge's ends.";
-        ParticleEdgeRadiusUnscaled "pe-radius-unscaled": "The radii are not multiplied by the edge's squared length when the denominator is cleared." => "(r1 + re)^2 is used instead of (r1 + re)^2 (x32 + t d32).(x32 + t d32).";
-        ParticleEdgeQuarticNegated "pe-quartic-negated": "The overlap polynomial is negative where the objects overlap." => "All five coefficients have the wrong sign.";
-        ParticleEdgeThreeTerms "pe-three-terms": "The overlap polynomial is cut to its last three terms." => "The coefficients of t^4 and t^3 are missing.";
-        ParticleEdgeQuarticNoFi "pe-quartic-no-fi": "A product is missing in the leading coefficient of the overlap." => "t^4 lacks -f i, with f = d21.d21 and i = d32.d32.";
-        ParticleEdgeQuarticPlusFi "pe-quartic-plus-fi": "A product in the leading coefficient of the overlap has the wrong sign." => "t^4 has +f i instead of -f i, with f = d21.d21 and i = d32.d32.";
-        ParticleEdgeNoCubic "pe-no-cubic": "The cubic coefficient of the overlap is zero." => "t^3: 0 is used instead of 2 b c - 2 e i - 2 f h, with b = (x1-x2).d32 + (dx1-dx2).x32, c = (dx1-dx2).d32, e = d21.x21, f = d21.d21, h = d32.x32 and i = d32.d32.";
-        ParticleEdgeCubicOneBc "pe-cubic-one-bc": "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has b c instead of 2 b c, with b = (x1-x2).d32 + (dx1-dx2).x32 and c = (dx1-dx2).d32.";
-        ParticleEdgeCubicOneEi "pe-cubic-one-ei": "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has -e i instead of -2 e i, with e = d21.x21 and i = d32.d32.";
-        ParticleEdgeCubicNoFh "pe-cubic-no-fh": "A product is missing in the cubic coefficient of the overlap." => "t^3 lacks -2 f h, with f = d21.d21 and h = d32.x32.";
-        ParticleEdgeCubicParentheses "pe-cubic-parentheses": "A product in the cubic coefficient of the overlap has the wrong sign." => "t^3 has +2 f h instead of -2 f h, with f = d21.d21 and h = d32.x32.";
-        ParticleEdgeSquareNoEh "pe-square-no-eh": "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.";
-        ParticleEdgeSquareTwoEh "pe-square-two-eh": "A product in the quadratic coefficient of the overlap has half its factor." => "t^2 has -2 e h instead of -4 e h, with e = d21.x21 and h = d32.x32.";
-        ParticleEdgeSquareNoBb "pe-square-no-bb": "A square is missing in the quadratic coefficient of the overlap." => "t^2 lacks b^2, with b = (x1-x2).d32 + (dx1-dx2).x32.";
-        ParticleEdgeSquareOneCa "pe-square-one-ca": "A product in the quadratic coefficient of the overlap lacks its factor." => "t^2 has c a instead of 2 c a, with a = (x1-x2).x32 and c = (dx1-dx2).d32.";
-        ParticleEdgeSquareNoDi "pe-square-no-di": "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -d i, with d = x21.x21 and i = d32.d32.";
-        ParticleEdgeSquarePlusFg "pe-square-plus-fg": "A product in the quadratic coefficient of the overlap has the wrong sign." => "t^2 has +f g instead of -f g, with f = d21.d21 and g = x32.x32.";
-        ParticleEdgeSquareRadiusTwice "pe-square-radius-twice": "The radius term of the overlap's quadratic coefficient is doubled." => "t^2 has 2 (r1 + re)^2 i instead of (r1 + re)^2 i, with i = d32.d32.";
-        ParticleEdgeLinearOneAb "pe-linear-one-ab": "A product in the linear coefficient of the overlap lacks its factor." => "t has a b instead of 2 a b, with a = (x1-x2).x32 and b = (x1-x2).d32 + (dx1-dx2).x32.";
-        ParticleEdgeLinearNoDh "pe-linear-no-dh": "A product is missing in the linear coefficient of the overlap." => "t lacks -2 d h, with d = x21.x21 and h = d32.x32.";
-        ParticleEdgeLinearNoEg "pe-linear-no-eg": "A product is missing in the linear coefficient of the overlap." => "t lacks -2 e g, with e = d21.x21 and g = x32.x32.";
-        ParticleEdgeLinearOneSh "pe-linear-one-sh": "The radius term of the overlap's linear coefficient lacks its factor." => "t has (r1 + re)^2 h instead of 2 (r1 + re)^2 h, with h = d32.x32.";
-        ParticleEdgeLinearMinusSh "pe-linear-minus-sh": "The radius term of the overlap's linear coefficient has the wrong sign." => "t has -2 (r1 + re)^2 h instead of 2 (r1 + re)^2 h, with h = d32.x32.";
-        ParticleEdgeConstantNoDg "pe-constant-no-dg": "A product is missing in the constant coefficient of the overlap." => "1 lacks -d g, with d = x21.x21 and g = x32.x32.";
-        ParticleEdgeConstantMinusAa "pe-constant-minus-aa": "A square in the constant coefficient of the overlap has the wrong sign." => "1 has -a^2 instead of a^2, with a = (x1-x2).x32.";
-        AlphaLowSlopeSign "pe-alpha-low-slope-sign": "The linear coefficient of alpha > 0 has the wrong sign." => "t: -b is used instead of b = (x1-x2).d32 + (dx1-dx2).x32.";
-        AlphaLowNegated "pe-alpha-low-negated": "The alpha > 0 polynomial has the wrong sign, so it tests the opposite." => "All three coefficients are negated: the polynomial says alpha < 0.";
-        AlphaLowNoQuadratic "pe-alpha-low-no-quadratic": "The quadratic coefficient of alpha > 0 is missing." => "t^2: 0 is used instead of (dx1-dx2).d32.";
-        AlphaLowHalfSlope "pe-alpha-low-half-slope": "The linear coefficient of alpha > 0 lacks one of its products." => "t lacks (x1-x2).d32.";
-        AlphaLowIsHigh "pe-alpha-low-is-high": "alpha < 1 is handed over twice, alpha > 0 never." => "The alpha < 1 polynomial is used instead of alpha > 0.";
-        AlphaLowAtStart "pe-alpha-low-at-start": "alpha > 0 is tested at the start of the step only." => "Only the constant (x1-x2).x32 is there.";
-        AlphaLowMissing "pe-alpha-low-missing": "alpha > 0 is not tested: a constant is used instead." => "The polynomial 1 is used instead of alpha > 0.";
-        AlphaHighIsLow "pe-alpha-high-is-low": "alpha > 0 is handed over twice, alpha < 1 never." => "The alpha > 0 polynomial is used instead of alpha < 1.";
-        AlphaHighUnscaled "pe-alpha-high-unscaled": "The whole in alpha < 1 is not multiplied by the edge's squared length." => "1 - (x1-x2).x32 is used instead of x32.x32 - (x1-x2).x32, and likewise for t and t^2.";
-        AlphaHighNegated "pe-alpha-high-negated": "The alpha < 1 polynomial has the wrong sign, so it tests the opposite." => "All three coefficients are negated: the polynomial says alpha > 1.";
-        AlphaHighHalfSlope "pe-alpha-high-half-slope": "The linear coefficient of alpha < 1 lacks one of its products." => "t lacks (x1-x3).(dx2-dx3).";
-        AlphaHighSlopeSign "pe-alpha-high-slope-sign": "The linear coefficient of alpha < 1 has the wrong sign." => "t: -(dx1-dx3).(x2-x3) - (x1-x3).(dx2-dx3) is used instead of their sum.";
-        AlphaHighNoQuadratic "pe-alpha-high-no-quadratic": "The quadratic coefficient of alpha < 1 is missing." => "t^2: 0 is used instead of (dx1-dx3).(dx2-dx3).";
-        AlphaHighAtStart "pe-alpha-high-at-start": "alpha < 1 is tested at the start of the step only." => "Only the constant (x1-x3).(x2-x3) is there.";
-        AlphaHighMissing "pe-alpha-high-missing": "alpha < 1 is not tested: a constant is used instead." => "The polynomial 1 is used instead of alpha < 1.";
-        QuinticConstantAlpha "pe-approach-constant-alpha": "The approach treats alpha as constant during the step, which the assignment warns about." => "alpha = (x1-x2).x32 / x32.x32 at the start of the step is used instead of alpha(t).";
-        QuinticNegated "pe-approach-negated": "The approach has the wrong sign, so only separating objects collide." => "All six coefficients are negated.";
-        QuinticMissing "pe-approach-missing": "The approach is not tested: a constant is used instead." => "The polynomial 1 is used instead of the supplied quintic.";
-        QuinticLowestFirst "pe-approach-lowest-first": "The approach's coefficients are in the wrong order." => "The constant coefficient comes first instead of that of t^5.";
-        QuinticNoConstant "pe-approach-no-constant": "The approach's constant coefficient is overwritten with zero." => "1: the supplied quintic's last coefficient is 0.";
-        QuinticCutToLinear "pe-approach-cut": "The approach is cut to its last terms." => "Only the coefficients of t and 1 are there; those of t^5 to t^2 are missing.";
-        QuinticOldLetter "pe-approach-old-letter": "The approach uses a letter of the overlap's formula, which means another dot product there." => "d = x21.x21 is used instead of the quintic's d = d21.d21.";
+        ParticleEdgeRadiusUnscaled "pe-radius-unscaled" [Named(&RADIUS_UNSCALED)]: "The radii are not multiplied by the edge's squared length when the denominator is cleared." => "(r1 + re)^2 is used instead of (r1 + re)^2 (x32 + t d32).(x32 + t d32).";
+        ParticleEdgeQuarticNegated "pe-quartic-negated" [List(EdgeOverlap, negate)]: "The overlap polynomial is negative where the objects overlap." => "All five coefficients have the wrong sign.";
+        ParticleEdgeThreeTerms "pe-three-terms" [List(EdgeOverlap, keep_last::<3>)]: "The overlap polynomial is cut to its last three terms." => "The coefficients of t^4 and t^3 are missing.";
+        ParticleEdgeQuarticNoFi "pe-quartic-no-fi" [Weight(EdgeOverlap, 4, &[5, 8], 0.0)]: "A product is missing in the leading coefficient of the overlap." => "t^4 lacks -f i, with f = d21.d21 and i = d32.d32.";
+        ParticleEdgeQuarticPlusFi "pe-quartic-plus-fi" [Weight(EdgeOverlap, 4, &[5, 8], -1.0)]: "A product in the leading coefficient of the overlap has the wrong sign." => "t^4 has +f i instead of -f i, with f = d21.d21 and i = d32.d32.";
+        ParticleEdgeNoCubic "pe-no-cubic" [List(EdgeOverlap, |list| list[1] = 0.0)]: "The cubic coefficient of the overlap is zero." => "t^3: 0 is used instead of 2 b c - 2 e i - 2 f h, with b = (x1-x2).d32 + (dx1-dx2).x32, c = (dx1-dx2).d32, e = d21.x21, f = d21.d21, h = d32.x32 and i = d32.d32.";
+        ParticleEdgeCubicOneBc "pe-cubic-one-bc" [Weight(EdgeOverlap, 3, &[1, 2], 0.5)]: "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has b c instead of 2 b c, with b = (x1-x2).d32 + (dx1-dx2).x32 and c = (dx1-dx2).d32.";
+        ParticleEdgeCubicOneEi "pe-cubic-one-ei" [Weight(EdgeOverlap, 3, &[4, 8], 0.5)]: "A product in the cubic coefficient of the overlap lacks its factor." => "t^3 has -e i instead of -2 e i, with e = d21.x21 and i = d32.d32.";
+        ParticleEdgeCubicNoFh "pe-cubic-no-fh" [Weight(EdgeOverlap, 3, &[5, 7], 0.0)]: "A product is missing in the cubic coefficient of the overlap." => "t^3 lacks -2 f h, with f = d21.d21 and h = d32.x32.";
+        ParticleEdgeCubicParentheses "pe-cubic-parentheses" [Weight(EdgeOverlap, 3, &[5, 7], -1.0)]: "A product in the cubic coefficient of the overlap has the wrong sign." => "t^3 has +2 f h instead of -2 f h, with f = d21.d21 and h = d32.x32.";
+        ParticleEdgeSquareNoEh "pe-square-no-eh" [Weight(EdgeOverlap, 2, &[4, 7], 0.0)]: "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -4 e h, with e = d21.x21 and h = d32.x32.";
+        ParticleEdgeSquareTwoEh "pe-square-two-eh" [Weight(EdgeOverlap, 2, &[4, 7], 0.5)]: "A product in the quadratic coefficient of the overlap has half its factor." => "t^2 has -2 e h instead of -4 e h, with e = d21.x21 and h = d32.x32.";
+        ParticleEdgeSquareNoBb "pe-square-no-bb" [Weight(EdgeOverlap, 2, &[1, 1], 0.0)]: "A square is missing in the quadratic coefficient of the overlap." => "t^2 lacks b^2, with b = (x1-x2).d32 + (dx1-dx2).x32.";
+        ParticleEdgeSquareOneCa "pe-square-one-ca" [Weight(EdgeOverlap, 2, &[0, 2], 0.5)]: "A product in the quadratic coefficient of the overlap lacks its factor." => "t^2 has c a instead of 2 c a, with a = (x1-x2).x32 and c = (dx1-dx2).d32.";
+        ParticleEdgeSquareNoDi "pe-square-no-di" [Weight(EdgeOverlap, 2, &[3, 8], 0.0)]: "A product is missing in the quadratic coefficient of the overlap." => "t^2 lacks -d i, with d = x21.x21 and i = d32.d32.";
+        ParticleEdgeSquarePlusFg "pe-square-plus-fg" [Weight(EdgeOverlap, 2, &[5, 6], -1.0)]: "A product in the quadratic coefficient of the overlap has the wrong sign." => "t^2 has +f g instead of -f g, with f = d21.d21 and g = x32.x32.";
+        ParticleEdgeSquareRadiusTwice "pe-square-radius-twice" [Weight(EdgeOverlap, 2, &[8, 9], 2.0)]: "The radius term of the overlap's quadratic coefficient is doubled." => "t^2 has 2 (r1 + re)^2 i instead of (r1 + re)^2 i, with i = d32.d32.";
+        ParticleEdgeLinearOneAb "pe-linear-one-ab" [Weight(EdgeOverlap, 1, &[0, 1], 0.5)]: "A product in the linear coefficient of the overlap lacks its factor." => "t has a b instead of 2 a b, with a = (x1-x2).x32 and b = (x1-x2).d32 + (dx1-dx2).x32.";
+        ParticleEdgeLinearNoDh "pe-linear-no-dh" [Weight(EdgeOverlap, 1, &[3, 7], 0.0)]: "A product is missing in the linear coefficient of the overlap." => "t lacks -2 d h, with d = x21.x21 and h = d32.x32.";
+        ParticleEdgeLinearNoEg "pe-linear-no-eg" [Weight(EdgeOverlap, 1, &[4, 6], 0.0)]: "A product is missing in the linear coefficient of the overlap." => "t lacks -2 e g, with e = d21.x21 and g = x32.x32.";
+        ParticleEdgeLinearOneSh "pe-linear-one-sh" [Weight(EdgeOverlap, 1, &[7, 9], 0.5)]: "The radius term of the overlap's linear coefficient lacks its factor." => "t has (r1 + re)^2 h instead of 2 (r1 + re)^2 h, with h = d32.x32.";
+        ParticleEdgeLinearMinusSh "pe-linear-minus-sh" [Weight(EdgeOverlap, 1, &[7, 9], -1.0)]: "The radius term of the overlap's linear coefficient has the wrong sign." => "t has -2 (r1 + re)^2 h instead of 2 (r1 + re)^2 h, with h = d32.x32.";
+        ParticleEdgeConstantNoDg "pe-constant-no-dg" [Weight(EdgeOverlap, 0, &[3, 6], 0.0)]: "A product is missing in the constant coefficient of the overlap." => "1 lacks -d g, with d = x21.x21 and g = x32.x32.";
+        ParticleEdgeConstantMinusAa "pe-constant-minus-aa" [Weight(EdgeOverlap, 0, &[0, 0], -1.0)]: "A square in the constant coefficient of the overlap has the wrong sign." => "1 has -a^2 instead of a^2, with a = (x1-x2).x32.";
+        AlphaLowSlopeSign "pe-alpha-low-slope-sign" [List(AlphaLow, negate_at::<1>)]: "The linear coefficient of alpha > 0 has the wrong sign." => "t: -b is used instead of b = (x1-x2).d32 + (dx1-dx2).x32.";
+        AlphaLowNegated "pe-alpha-low-negated" [List(AlphaLow, negate)]: "The alpha > 0 polynomial has the wrong sign, so it tests the opposite." => "All three coefficients are negated: the polynomial says alpha < 0.";
+        AlphaLowNoQuadratic "pe-alpha-low-no-quadratic" [List(AlphaLow, keep_last::<2>)]: "The quadratic coefficient of alpha > 0 is missing." => "t^2: 0 is used instead of (dx1-dx2).d32.";
+        AlphaLowHalfSlope "pe-alpha-low-half-slope" [Weight(AlphaLow, 1, &[1], 0.0)]: "The linear coefficient of alpha > 0 lacks one of its products." => "t lacks (x1-x2).d32.";
+        AlphaLowIsHigh "pe-alpha-low-is-high" [Lists(|lists| lists[1] = lists[2].clone())]: "alpha < 1 is handed over twice, alpha > 0 never." => "The alpha < 1 polynomial is used instead of alpha > 0.";
+        AlphaLowAtStart "pe-alpha-low-at-start" [List(AlphaLow, keep_last::<1>)]: "alpha > 0 is tested at the start of the step only." => "Only the constant (x1-x2).x32 is there.";
+        AlphaLowMissing "pe-alpha-low-missing" [List(AlphaLow, replace_by_one)]: "alpha > 0 is not tested: a constant is used instead." => "The polynomial 1 is used instead of alpha > 0.";
+        AlphaHighIsLow "pe-alpha-high-is-low" [Lists(|lists| lists[2] = lists[1].clone())]: "alpha > 0 is handed over twice, alpha < 1 never." => "The alpha > 0 polynomial is used instead of alpha < 1.";
+        AlphaHighUnscaled "pe-alpha-high-unscaled" [Named(&ONE_UNSCALED)]: "The whole in alpha < 1 is not multiplied by the edge's squared length." => "1 - (x1-x2).x32 is used instead of x32.x32 - (x1-x2).x32, and likewise for t and t^2.";
+        AlphaHighNegated "pe-alpha-high-negated" [List(AlphaHigh, negate)]: "The alpha < 1 polynomial has the wrong sign, so it tests the opposite." => "All three coefficients are negated: the polynomial says alpha > 1.";
+        AlphaHighHalfSlope "pe-alpha-high-half-slope" [Weight(AlphaHigh, 1, &[2], 0.0)]: "The linear coefficient of alpha < 1 lacks one of its products." => "t lacks (dx1-dx3).(x2-x3).";
+        AlphaHighSlopeSign "pe-alpha-high-slope-sign" [List(AlphaHigh, negate_at::<1>)]: "The linear coefficient of alpha < 1 has the wrong sign." => "t: -(dx1-dx3).(x2-x3) - (x1-x3).(dx2-dx3) is used instead of their sum.";
+        AlphaHighNoQuadratic "pe-alpha-high-no-quadratic" [List(AlphaHigh, keep_last::<2>)]: "The quadratic coefficient of alpha < 1 is missing." => "t^2: 0 is used instead of (dx1-dx3).(dx2-dx3).";
+        AlphaHighAtStart "pe-alpha-high-at-start" [List(AlphaHigh, keep_last::<1>)]: "alpha < 1 is tested at the start of the step only." => "Only the constant (x1-x3).(x2-x3) is there.";
+        AlphaHighMissing "pe-alpha-high-missing" [List(AlphaHigh, replace_by_one)]: "alpha < 1 is not tested: a constant is used instead." => "The polynomial 1 is used instead of alpha < 1.";
+        QuinticConstantAlpha "pe-approach-constant-alpha" [Named(&CONSTANT_ALPHA)]: "The approach treats alpha as constant during the step, which the assignment warns about." => "alpha = (x1-x2).x32 / x32.x32 at the start of the step is used instead of alpha(t).";
+        QuinticNegated "pe-approach-negated" [List(EdgeApproach, negate)]: "The approach has the wrong sign, so only separating objects collide." => "All six coefficients are negated.";
+        QuinticMissing "pe-approach-missing" [List(EdgeApproach, replace_by_one)]: "The approach is not tested: a constant is used instead." => "The polynomial 1 is used instead of the supplied quintic.";
+        QuinticLowestFirst "pe-approach-lowest-first" [List(EdgeApproach, |list| list.reverse())]: "The approach's coefficients are in the wrong order." => "The constant coefficient comes first instead of that of t^5.";
+        QuinticNoConstant "pe-approach-no-constant" [List(EdgeApproach, |list| list[5] = 0.0)]: "The approach's constant coefficient is overwritten with zero." => "1: the supplied quintic's last coefficient is 0.";
+        QuinticCutToLinear "pe-approach-cut" [List(EdgeApproach, keep_last::<2>)]: "The approach is cut to its last terms." => "Only the coefficients of t and 1 are there; those of t^5 to t^2 are missing.";
+        QuinticOldLetter "pe-approach-old-letter" [Letters(EdgeApproach, |letters, inputs| letters[3] = inputs.x21().dot(inputs.x21()))]: "The approach uses a letter of the overlap's formula, which means another dot product there." => "d = x21.x21 is used instead of the quintic's d = d21.d21.";
     }
     Wrong ParticleHalfPlane {
-        HalfPlaneEmpty "ph-empty": "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
-        HalfPlaneZero "ph-zero": "The coefficients are left at zero." => "Every coefficient is 0.";
-        HalfPlaneReversed "ph-reversed": "The coefficients are handed over lowest power first." =>
+        HalfPlaneEmpty "ph-empty" [Lists(Vec::clear)]: "The detection is left empty: it never calls the root finder." => "No polynomial reaches the root finder; overlap (quadratic) and approach (linear) are expected for each pair.";
+        HalfPlaneZero "ph-zero" [Lists(|lists| lists.iter_mut().for_each(|list| list.fill(0.0)))]:
+            "The coefficients are left at zero."
+            => "Every coefficient is 0.";
+        HalfPlaneReversed "ph-reversed" [Lists(|lists| lists.iter_mut().for_each(|list| list.reverse()))]:
+            "The coefficients are handed over lowest power first."
+            =>
             "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";
-        HalfPlaneSwapped "ph-swapped": "The first two polynomials are handed over in the wrong order." =>
+        HalfPlaneSwapped "ph-swapped" [Lists(|lists| lists.swap(0, 1))]:
+            "The first two polynomials are handed over in the wrong order."
+            =>
             "Polynomial 2 comes before polynomial 1.";
-        HalfPlaneNoNormalSquare "ph-no-normal-square": "The radius term ignores the normal's length, which is right for unit normals only." => "1: r^2 is used instead of r^2 (n.n).";
-        HalfPlaneNormalLength "ph-normal-length": "The radius term has the normal's length instead of its square." => "1: r^2 |n| is used instead of r^2 (n.n).";
-        HalfPlaneRadiusNotSquared "ph-radius-not-squared": "The radius is not squared." => "1: r (n.n) is used instead of r^2 (n.n).";
-        HalfPlaneNoRadius "ph-no-radius": "The radius is forgotten." => "1: r^2 (n.n) is missing.";
-        HalfPlaneDiameter "ph-diameter": "The diameter is used instead of the radius." => "1: (2 r)^2 (n.n) is used instead of r^2 (n.n).";
+        HalfPlaneNoNormalSquare "ph-no-normal-square" [Named(&NO_NORMAL_SQUARE)]: "The radius term ignores the normal's length, which is right for unit normals only." => "1: r^2 is used instead of r^2 (n.n).";
+        HalfPlaneNormalLength "ph-normal-length" [Named(&NORMAL_LENGTH)]: "The radius term has the normal's length instead of its square." => "1: r^2 |n| is used instead of r^2 (n.n).";
+        HalfPlaneRadiusNotSquared "ph-radius-not-squared" [Named(&RADIUS_NOT_SQUARED)]: "The radius is not squared." => "1: r (n.n) is used instead of r^2 (n.n).";
+        HalfPlaneNoRadius "ph-no-radius" [Named(&NO_RADIUS)]: "The radius is forgotten." => "1: r^2 (n.n) is missing.";
+        HalfPlaneDiameter "ph-diameter" [Named(&DIAMETERS)]: "The diameter is used instead of the radius." => "1: (2 r)^2 (n.n) is used instead of r^2 (n.n).";
         HalfPlaneRadiusIndex "ph-radius-index": "The radius is read at the half-plane's number." => "radius[p] is used instead of radius[i], p being the half-plane.";
-        HalfPlaneNoTwo "ph-no-two": "The linear coefficient of the overlap lacks a factor." => "t: ((p-x).n) (dx.n) is used instead of 2 ((p-x).n) (dx.n).";
-        HalfPlaneLinearSign "ph-linear-sign": "The linear coefficient of the overlap has the wrong sign." => "t: -2 ((p-x).n) (dx.n) is used instead of 2 ((p-x).n) (dx.n).";
-        HalfPlaneQuadraticSign "ph-quadratic-sign": "The quadratic coefficient of the overlap has the wrong sign." => "t^2: (dx.n)^2 is used instead of -(dx.n)^2.";
-        HalfPlaneNoQuadratic "ph-no-quadratic": "The quadratic coefficient of the overlap is missing." => "t^2: 0 is used instead of -(dx.n)^2.";
-        HalfPlaneConstantSign "ph-constant-sign": "The distance is added to the radius instead of subtracted." => "1: +((p-x).n)^2 is used instead of -((p-x).n)^2.";
-        HalfPlaneOffsetNotSquared "ph-offset-not-squared": "The constant coefficient has the distance instead of its square." => "1: -((p-x).n) is used instead of -((p-x).n)^2.";
-        HalfPlaneOverlapNegated "ph-overlap-negated": "The overlap polynomial is negative where the particle overlaps." => "All three coefficients have the wrong sign.";
-        HalfPlaneOverlapSigned "ph-overlap-signed": "The overlap is a signed distance, which is right on one side of the boundary only." => "-(dx.n) t + r |n| + (p-x).n is used instead of r^2 (n.n) - ((p-x).n - t (dx.n))^2.";
+        HalfPlaneNoTwo "ph-no-two" [Weight(HalfPlaneOverlap, 1, &[0, 1], 0.5)]: "The linear coefficient of the overlap lacks a factor." => "t: ((p-x).n) (dx.n) is used instead of 2 ((p-x).n) (dx.n).";
+        HalfPlaneLinearSign "ph-linear-sign" [Weight(HalfPlaneOverlap, 1, &[0, 1], -1.0)]: "The linear coefficient of the overlap has the wrong sign." => "t: -2 ((p-x).n) (dx.n) is used instead of 2 ((p-x).n) (dx.n).";
+        HalfPlaneQuadraticSign "ph-quadratic-sign" [Weight(HalfPlaneOverlap, 2, &[0, 0], -1.0)]: "The quadratic coefficient of the overlap has the wrong sign." => "t^2: (dx.n)^2 is used instead of -(dx.n)^2.";
+        HalfPlaneNoQuadratic "ph-no-quadratic" [Weight(HalfPlaneOverlap, 2, &[0, 0], 0.0)]: "The quadratic coefficient of the overlap is missing." => "t^2: 0 is used instead of -(dx.n)^2.";
+        HalfPlaneConstantSign "ph-constant-sign" [Weight(HalfPlaneOverlap, 0, &[1, 1], -1.0)]: "The distance is added to the radius instead of subtracted." => "1: +((p-x).n)^2 is used instead of -((p-x).n)^2.";
+        HalfPlaneOffsetNotSquared "ph-offset-not-squared" [Formula(HalfPlaneOverlap, offset_not_squared)]: "The constant coefficient has the distance instead of its square." => "1: -((p-x).n) is used instead of -((p-x).n)^2.";
+        HalfPlaneOverlapNegated "ph-overlap-negated" [List(HalfPlaneOverlap, negate)]: "The overlap polynomial is negative where the particle overlaps." => "All three coefficients have the wrong sign.";
+        HalfPlaneOverlapSigned "ph-overlap-signed" [Named(&SIGNED_DISTANCE)]: "The overlap is a signed distance, which is right on one side of the boundary only." => "-(dx.n) t + r |n| + (p-x).n is used instead of r^2 (n.n) - ((p-x).n - t (dx.n))^2.";
         HalfPlaneFirst "ph-first-half-plane": "The first half-plane is used instead of the pair's own." => "p and n of half-plane 0 are used instead of those of the pair's half-plane.";
         HalfPlanePositionIndex "ph-position-index": "Positions are read at the particle's number, although each particle has two coordinates." => "x[i] is used instead of x[2 i].";
-        HalfPlaneNoPoint "ph-no-point": "The half-plane's point is forgotten, as if it went through the origin." => "-x is used instead of p - x.";
-        HalfPlaneEndPosition "ph-end-position": "The formulas start from the position at the end of the step." => "x is taken from qe instead of qs.";
-        HalfPlaneEndForDisplacement "ph-end-for-displacement": "The end position is used instead of the displacement." => "dx = qe is used instead of dx = qe - qs.";
-        HalfPlaneReversedOffset "ph-reversed-offset": "The vector from the particle to the half-plane is taken the other way round." => "x - p is used instead of p - x.";
-        HalfPlaneApproachNoSpeed "ph-approach-no-speed": "The approach lacks a factor, so it is right on one side only." => "-(dx.n) t + ((p-x).n) lacks the factor (dx.n).";
-        HalfPlaneApproachConstantNoSpeed "ph-approach-constant-no-speed": "The constant term of the approach lacks a factor." => "1: ((p-x).n) is used instead of ((p-x).n) (dx.n).";
-        HalfPlaneApproachNegated "ph-approach-negated": "The approach has the wrong sign, so only separating particles collide." => "(dx.n)^2 t - ((p-x).n) (dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
-        HalfPlaneApproachSlopeSign "ph-approach-slope-sign": "The approach's slope has the wrong sign." => "t: (dx.n)^2 is used instead of -(dx.n)^2.";
-        HalfPlaneApproachSlopeTwice "ph-approach-slope-twice": "The approach's slope has a factor that its constant term lacks." => "t: -2 (dx.n)^2 is used instead of -(dx.n)^2.";
-        HalfPlaneApproachAtStart "ph-approach-at-start": "The approach is tested at the start of the step only." => "The term -(dx.n)^2 t is missing; only ((p-x).n) (dx.n) is there.";
-        HalfPlaneApproachSpeedOnly "ph-approach-speed-only": "The approach uses only the velocity, not the side." => "The constant (dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
-        HalfPlaneApproachClosingOnly "ph-approach-closing-only": "The approach uses only the velocity, as if the particle were always in front." => "The constant -(dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
-        HalfPlaneNoApproach "ph-no-approach": "The approach is not tested: a constant is used instead." => "The polynomial 1 is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
+        HalfPlaneNoPoint "ph-no-point" [Named(&NO_POINT)]: "The half-plane's point is forgotten, as if it went through the origin." => "-x is used instead of p - x.";
+        HalfPlaneEndPosition "ph-end-position" [Named(&END_POSITIONS)]: "The formulas start from the position at the end of the step." => "x is taken from qe instead of qs.";
+        HalfPlaneEndForDisplacement "ph-end-for-displacement" [Named(&END_FOR_DISPLACEMENT)]: "The end position is used instead of the displacement." => "dx = qe is used instead of dx = qe - qs.";
+        HalfPlaneReversedOffset "ph-reversed-offset" [Named(&REVERSED_OFFSET)]: "The vector from the particle to the half-plane is taken the other way round." => "x - p is used instead of p - x.";
+        HalfPlaneApproachNoSpeed "ph-approach-no-speed" [Named(&NO_SPEED_FACTOR)]: "The approach lacks a factor, so it is right on one side only." => "-(dx.n) t + ((p-x).n) lacks the factor (dx.n).";
+        HalfPlaneApproachConstantNoSpeed "ph-approach-constant-no-speed" [Formula(HalfPlaneApproach, constant_without_speed)]: "The constant term of the approach lacks a factor." => "1: ((p-x).n) is used instead of ((p-x).n) (dx.n).";
+        HalfPlaneApproachNegated "ph-approach-negated" [List(HalfPlaneApproach, negate)]: "The approach has the wrong sign, so only separating particles collide." => "(dx.n)^2 t - ((p-x).n) (dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
+        HalfPlaneApproachSlopeSign "ph-approach-slope-sign" [List(HalfPlaneApproach, negate_at::<0>)]: "The approach's slope has the wrong sign." => "t: (dx.n)^2 is used instead of -(dx.n)^2.";
+        HalfPlaneApproachSlopeTwice "ph-approach-slope-twice" [List(HalfPlaneApproach, |list| list[0] *= 2.0)]: "The approach's slope has a factor that its constant term lacks." => "t: -2 (dx.n)^2 is used instead of -(dx.n)^2.";
+        HalfPlaneApproachAtStart "ph-approach-at-start" [List(HalfPlaneApproach, keep_last::<1>)]: "The approach is tested at the start of the step only." => "The term -(dx.n)^2 t is missing; only ((p-x).n) (dx.n) is there.";
+        HalfPlaneApproachSpeedOnly "ph-approach-speed-only" [Named(&SPEED_ONLY)]: "The approach uses only the velocity, not the side." => "The constant (dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
+        HalfPlaneApproachClosingOnly "ph-approach-closing-only" [Formula(HalfPlaneApproach, closing_only)]: "The approach uses only the velocity, as if the particle were always in front." => "The constant -(dx.n) is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
+        HalfPlaneNoApproach "ph-no-approach" [List(HalfPlaneApproach, replace_by_one)]: "The approach is not tested: a constant is used instead." => "The polynomial 1 is used instead of -(dx.n)^2 t + ((p-x).n) (dx.n).";
     }
     Wrong Handover {
         HandoverLowestFirst "handover-lowest-first": "All coefficients are handed over lowest power first." => "Polynomial takes the coefficient of the highest power first; here 1 comes first, then t.";

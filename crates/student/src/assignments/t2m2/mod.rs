@@ -1,18 +1,19 @@
 //! Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
 pub mod catalogue;
-pub mod exchanges;
+mod edits;
 pub mod extras;
 pub mod formulas;
 pub mod ingredients;
 mod inputs;
+mod named;
 pub(super) mod probes;
 mod reading;
-pub mod specials;
+mod specials;
 
 pub use catalogue::{CATALOGUE, Mistake, Row};
-pub use exchanges::{EXCHANGES, Exchange, find_exchange};
+pub use edits::{FormulaEdit, NamedEdit};
 pub use formulas::Letter;
 pub use fosssim_findings::explanation::{Input, Reading, Subject};
 pub use inputs::Inputs;
+pub use named::{NAMED_EDITS, find_edit};
 pub use reading::letter;
-pub use specials::{SPECIALS, Special, find_special};

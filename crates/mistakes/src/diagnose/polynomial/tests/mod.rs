@@ -351,21 +351,16 @@ fn wrong_radii_are_named() {
         ("diameters", |r1, r2| 4.0 * (r1 + r2) * (r1 + r2)),
     ];
     for (key, square) in squares {
-        only(
-            PairKind::ParticleEdge,
-            key,
-            is(PolynomialDetail::Exchange { key: key.into(), of_edges: true }),
-            |motion| {
-                let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
-                let mut lists = edge_lists(motion);
-                lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
-                lists
-            },
-        );
+        only(PairKind::ParticleEdge, key, is(PolynomialDetail::Named { key: key.into(), of_edges: true }), |motion| {
+            let PairMotion::Edge { radii: [r1, re], .. } = motion else { panic!("no edge") };
+            let mut lists = edge_lists(motion);
+            lists[0] = quartic(&Letters { s: square(*r1, *re), ..letters(motion) });
+            lists
+        });
         only(
             PairKind::ParticleParticle,
             key,
-            is(PolynomialDetail::Exchange { key: key.into(), of_edges: false }),
+            is(PolynomialDetail::Named { key: key.into(), of_edges: false }),
             |motion| {
                 let PairMotion::Particles { radii: [r1, r2], .. } = motion else { panic!("no particles") };
                 let mut lists = particle_lists(motion);
@@ -506,7 +501,7 @@ fn small_slips_in_quadratics_are_named() {
         PairMotion::HalfPlane { normal, radius, .. } => (normal.dot(normal), radius * radius),
         _ => panic!("no half-plane"),
     };
-    let exchange = |key: &'static str| is(PolynomialDetail::Exchange { key: key.into(), of_edges: false });
+    let exchange = |key: &'static str| is(PolynomialDetail::Named { key: key.into(), of_edges: false });
     half_plane("no-normal-square", &exchange("no-normal-square"), &|motion, lists| {
         let (n, r) = n_square(motion);
         lists[0][2] += r - r * n;
@@ -525,12 +520,17 @@ fn small_slips_in_quadratics_are_named() {
         lists[2][1] = (one.start - three.start).dot(&(two.shift - three.shift));
         lists
     });
-    only(PairKind::ParticleEdge, "one-unscaled", is(PolynomialDetail::Special("one-unscaled".into())), |motion| {
-        let mut lists = edge_lists(motion);
-        lists[2] = lists[1].iter().map(|value| -value).collect();
-        lists[2][2] += 1.0;
-        lists
-    });
+    only(
+        PairKind::ParticleEdge,
+        "one-unscaled",
+        is(PolynomialDetail::Named { key: "one-unscaled".into(), of_edges: true }),
+        |motion| {
+            let mut lists = edge_lists(motion);
+            lists[2] = lists[1].iter().map(|value| -value).collect();
+            lists[2][2] += 1.0;
+            lists
+        },
+    );
 }
 
 /// A mistake that only half of the pairs show is told with its share; one that is no simple mistake is told as such.

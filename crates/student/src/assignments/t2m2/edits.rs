@@ -1,0 +1,129 @@
+//! Changes of the formulas of a pair, as data: the student's program and the explanation follow from one row.
+use super::{
+    Inputs, Subject,
+    formulas::{product, readings},
+};
+use fosssim_model::sim::PairKind;
+use fosssim_num::bounded::BoundedValue;
+
+/// A change of formulas that has a key and words.
+pub struct NamedEdit {
+    /// The explanation's key.
+    pub key: &'static str,
+    /// The explanation's sentence, without its full stop.
+    pub sentence: &'static str,
+    /// The exact form.
+    pub detail: &'static str,
+    /// The cost of the guess; see `study`.
+    pub cost: f64,
+    /// The kinds of pairs that it concerns.
+    pub(super) kinds: &'static [PairKind],
+    /// The change itself.
+    pub edit: FormulaEdit,
+}
+
+impl NamedEdit {
+    /// Returns the polynomial that it makes, highest power first; `None` if it does not concern this polynomial.
+    #[must_use]
+    pub fn polynomial(&self, subject: Subject, inputs: &Inputs) -> Option<Vec<BoundedValue>> {
+        match self.edit {
+            FormulaEdit::OtherInputs(change) if self.kinds.contains(&subject.kind()) => {
+                let mut inputs = *inputs;
+                change(&mut inputs);
+                Some(readings(subject)[0].polynomial(&inputs))
+            }
+            FormulaEdit::Formula(of, make) if of == subject => Some(make(inputs)),
+            _ => None,
+        }
+    }
+}
+
+/// A change of the formulas of one kind of pair.
+#[derive(Clone, Copy)]
+pub enum FormulaEdit {
+    /// A change that explanations know by its name.
+    Named(&'static NamedEdit),
+    /// All formulas get other inputs.
+    OtherInputs(fn(&mut Inputs)),
+    /// A term of the first reading's coefficient of `t^power`, by its letters, has this factor in addition to its own.
+    Weight(Subject, usize, &'static [usize], f64),
+    /// The formula has other values for its letters.
+    Letters(Subject, fn(&mut [BoundedValue], &Inputs)),
+    /// Another formula is used.
+    Formula(Subject, fn(&Inputs) -> Vec<BoundedValue>),
+    /// The coefficients change, highest power first.
+    List(Subject, fn(&mut Vec<f64>)),
+    /// The list of all polynomials changes.
+    Lists(fn(&mut Vec<Vec<f64>>)),
+}
+
+impl FormulaEdit {
+    /// Makes the change in the right polynomials of a pair. The approach of edges has this reading.
+    pub fn apply(self, inputs: &Inputs, lists: &mut Vec<Vec<f64>>, subjects: &[Subject], approach: usize) {
+        let formula = |subject| &readings(subject)[if subject == Subject::EdgeApproach { approach } else { 0 }];
+        let mut replace = |subject: Subject, change: &dyn Fn(&mut Vec<f64>)| {
+            subjects.iter().zip(&mut *lists).filter(|(one, _)| **one == subject).for_each(|(_, list)| change(list));
+        };
+        let values = |list: Vec<BoundedValue>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
+        match self {
+            Self::Named(named) => named.edit.apply(inputs, lists, subjects, approach),
+            Self::OtherInputs(change) => {
+                let mut inputs = *inputs;
+                change(&mut inputs);
+                *lists = subjects.iter().map(|&subject| values(formula(subject).polynomial(&inputs))).collect();
+            }
+            Self::Weight(subject, power, letters, factor) => replace(subject, &|list| {
+                let formula = formula(subject);
+                let quantities = formula.values(inputs);
+                let terms = formula.terms.iter().filter(|term| term.power == power);
+                let weight = |letters_of_term| if letters_of_term == letters { factor } else { 1.0 };
+                list[formula.degree - power] = terms
+                    .map(|term| weight(term.letters) * term.weight * product(&quantities, term.letters).value)
+                    .sum();
+            }),
+            Self::Letters(subject, change) => replace(subject, &|list| {
+                let mut quantities = formula(subject).values(inputs);
+                change(&mut quantities, inputs);
+                *list = values(formula(subject).evaluate(&quantities));
+            }),
+            Self::Formula(subject, make) => replace(subject, &|list| *list = values(make(inputs))),
+            Self::List(subject, change) => replace(subject, &change),
+            Self::Lists(change) => change(lists),
+        }
+    }
+}
+
+#[expect(clippy::ptr_arg, reason = "a change of a list may shorten it")]
+pub(super) fn negate(list: &mut Vec<f64>) {
+    list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient);
+}
+
+#[expect(clippy::ptr_arg, reason = "a change of a list may shorten it")]
+pub(super) fn negate_at<const PLACE: usize>(list: &mut Vec<f64>) {
+    list[PLACE] = -list[PLACE];
+}
+
+pub(super) fn keep_last<const COUNT: usize>(list: &mut Vec<f64>) {
+    list.drain(..list.len() - COUNT);
+}
+
+pub(super) fn replace_by_one(list: &mut Vec<f64>) {
+    *list = vec![1.0];
+}
+
+/// Forgets the first particle's displacement in the overlap.
+pub(super) fn first_still(letters: &mut [BoundedValue], inputs: &Inputs) {
+    (letters[0], letters[1]) = (inputs.d[1].dot(inputs.d[1]), inputs.x21().dot(inputs.d[1]));
+}
+
+/// Takes end positions for displacements in the overlap.
+pub(super) fn ends_for_displacements(letters: &mut [BoundedValue], inputs: &Inputs) {
+    let end = inputs.x21() + inputs.d21();
+    (letters[0], letters[1]) = (end.dot(end), inputs.x21().dot(end));
+}
+
+/// Leaves the second component out of the overlap's moving terms.
+pub(super) fn x_only(letters: &mut [BoundedValue], inputs: &Inputs) {
+    let (x, d) = (inputs.x21().x, inputs.d21().x);
+    (letters[0], letters[1]) = (d * d, x * d);
+}
