@@ -1,4 +1,4 @@
-// promise: A program cannot read how many processes the machine has, nor reach the root of a /proc.
+// promise: A program cannot count the machine's processes by the links of a /proc, nor reach its root.
 // expect: exited 0
 // needs: private processes
 #include "attack.h"

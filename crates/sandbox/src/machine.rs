@@ -22,31 +22,3 @@ pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
 pub(super) fn has_swap() -> bool {
     read_sysinfo().totalswap > 0
 }
-
-/// Returns the answer to `sysinfo` of a machine on which nothing is in use and no other process runs, in the kernel's
-/// form.
-pub(super) fn without_others() -> Vec<u8> {
-    let about = read_sysinfo();
-    // SAFETY: an all-zero structure is valid. It is made of integers only; the bytes between them are zero as well, and
-    // all bytes are read while it lives.
-    unsafe {
-        let mut told: libc::sysinfo = std::mem::zeroed();
-        (told.uptime, told.mem_unit, told.procs) = (about.uptime, about.mem_unit, 1);
-        (told.totalram, told.freeram) = (about.totalram, about.totalram);
-        std::slice::from_raw_parts((&raw const told).cast::<u8>(), size_of_val(&told)).to_vec()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_machine_is_told_and_its_use_is_not() {
-        let told = without_others();
-        let word = |index: usize| u64::from_ne_bytes(told[8 * index..8 * index + 8].try_into().unwrap());
-        // Uptime, three loads, memory in all and free.
-        assert!(word(0) > 0 && word(4) > 0 && word(4) == word(5), "{told:?}");
-        assert_eq!([word(1), word(2), word(3), word(6), word(7)], [0; 5]);
-    }
-}

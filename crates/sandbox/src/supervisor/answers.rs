@@ -8,28 +8,13 @@ use std::{
     time::{Duration, Instant},
 };
 
-use crate::{
-    machine,
-    sys::{self, CallAnswer, PendingCall},
-};
+use crate::sys::{self, CallAnswer, PendingCall};
 
 /// Returns the memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers
 /// itself.
 fn open_memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
-}
-
-/// Reports to the thread the machine's memory and its time since the start, but not the memory in use: the C library
-/// sorts long arrays by it.
-pub(super) fn about_machine(announced: &PendingCall, user: Option<u32>) -> CallAnswer {
-    match open_memory(announced, user) {
-        Err(_) => CallAnswer::GoOn,
-        Ok(memory) if memory.write_all_at(&machine::without_others(), announced.arguments[0]).is_ok() => {
-            CallAnswer::Done
-        }
-        Ok(_) => CallAnswer::Refused(libc::EFAULT),
-    }
 }
 
 /// Threads that wait for a word that other processes might share, as the C library waits for the end of a thread.

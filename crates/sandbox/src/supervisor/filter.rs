@@ -247,9 +247,7 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     clone.push(mask_rule(0, parted, libc::CLONE_THREAD as u64)?);
     rules.insert(libc::SYS_clone, clone);
     if purpose.announce {
-        // The supervisor answers itself: the machine's memory, without the use by others; and that a thread may have
-        // ended, without a wait that others could end.
-        rules.insert(libc::SYS_sysinfo, Vec::new());
+        // The supervisor answers itself that a thread may have ended, without a wait that others could end.
         rules.insert(libc::SYS_futex, each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {

@@ -14,7 +14,7 @@ use std::{
 };
 
 use super::{
-    answers::{self, SharedWaits},
+    answers::SharedWaits,
     calls,
     child::{self, ChildPlan, OpenedFile},
     filter,
@@ -382,7 +382,6 @@ impl Run {
                 None => return Ok(()),
                 answer => answer,
             },
-            libc::SYS_sysinfo => Some(answers::about_machine(&announced, user)),
             call if locks::concerns(call) => {
                 Some(unless(sys::with_files_of(user, || locks::is_inside(&announced, &root))))
             }
