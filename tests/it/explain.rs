@@ -308,8 +308,15 @@ fn a_program_of_another_milestone_is_known_by_the_scenes_that_it_takes() {
     std::fs::set_permissions(workspace.path("older"), std::os::unix::fs::PermissionsExt::from_mode(0o755))
         .expect("ours");
     let run = workspace.run(["grade", "older", "--scene", "GeometricTests/b*"]);
-    let told = "it looks like a program of Theme 1, Milestone 3: grade it with --suite t1m3";
+    let told = "it looks like a program of Theme 1, Milestone 3, which is not the milestone of this suite";
     assert!(run.code == Some(1) && run.out().contains(told) && run.out().lines().count() < 8, "{}", run.shown());
+    assert!(run.out().contains(": grade it with --suite t1m3"), "{}", run.shown());
+    // A suite of one's own has a milestone, too; only a reader at a terminal can type an option.
+    assert_eq!(workspace.run(["suite", "init", "-o", "course.toml"]).code, Some(0));
+    let page = ["--suite", "course.toml", "--scene", "GeometricTests/b*", "--format", "html=older.html"];
+    let run = workspace.run([&["grade", "older"][..], &page].concat());
+    let html = std::fs::read_to_string(workspace.path("older.html")).expect("a page");
+    assert!(run.code == Some(1) && html.contains(told) && !html.contains("--suite"), "{}", run.shown());
     let run = workspace.run(["explain", "--program", "./older"]);
     assert!(run.code == Some(1) && run.err().contains("program of Theme 1, Milestone 3"), "{}", run.shown());
 }

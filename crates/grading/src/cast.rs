@@ -161,7 +161,6 @@ impl Stage {
         let reference = None;
         Grader {
             program: "FOSSSim",
-            assignment: None,
             plan,
             backend: &self.backend,
             options,

@@ -27,7 +27,6 @@ use super::{
 };
 use fosssim_files::Place;
 use fosssim_judge::Rules;
-use fosssim_model::assignments::Assignment;
 use fosssim_sandbox::Backend;
 use std::{
     collections::BTreeSet,
@@ -79,8 +78,6 @@ pub struct Grader<'a> {
     pub backend: &'a Backend,
     /// The program's name in archives.
     pub program: &'a str,
-    /// The milestone whose programs the suite grades, if that is known.
-    pub assignment: Option<Assignment>,
     /// How.
     pub options: Options,
     /// The folder for traces on which the grader itself failed; made when it is needed.

@@ -93,12 +93,6 @@ pub fn built_in(name: &str) -> Option<&'static str> {
     assignments::version(name).map(|(_, version)| version.suite)
 }
 
-/// Returns the assignment of a built-in suite.
-#[must_use]
-pub fn assignment(name: &str) -> Option<Assignment> {
-    assignments::version(name).map(|(assignment, _)| assignment)
-}
-
 /// The scenes that a pattern takes: names and XML.
 pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 

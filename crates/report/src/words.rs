@@ -17,7 +17,7 @@ use fosssim_findings::{
 };
 use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
 use fosssim_mistakes::together::likely_mistakes;
-use fosssim_model::assignments::{Assignment, Definition};
+use fosssim_model::assignments::Assignment;
 
 /// The words for a trace without the lists that its scene requires.
 pub const STATES_ONLY: &str =
@@ -103,8 +103,7 @@ pub fn describe_unfit(grade: &Grade) -> Option<String> {
 
 /// Returns the text for a program of another milestone than the suite's.
 fn milestone(other: Assignment) -> String {
-    let Definition { title, key, .. } = other.definition();
-    format!("it looks like a program of {title}: grade it with --suite {key}")
+    format!("it looks like a program of {}, which is not the milestone of this suite", other.definition().title)
 }
 
 /// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, if hints allow

@@ -252,7 +252,6 @@ impl GradingSession<'_> {
             plan: self.plan,
             backend: self.backend,
             program: &self.arguments.program,
-            assignment: plan::assignment(&self.arguments.suite),
             options,
             faults: &faults,
             traces: if self.arguments.keep_traces { Some(&trace) } else { None },

@@ -92,7 +92,6 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             plan: &plan,
             backend: &backend,
             program: "",
-            assignment: None,
             options: Options { jobs, fail_fast: false, recorded: false },
             faults: &Place::new("", "fosssim-faults"),
             traces: None,

@@ -75,8 +75,8 @@ pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms:
         return String::new();
     }
     format!(
-        "<p class=\"hint\">The page would grow beyond 3 MB: {}. <code>grade --scene NAME --format html=FILE</code> makes a page \
-         of one scene.</p>\n",
+        "<p class=\"hint\">The page would grow beyond 3 MB: {}. At a terminal, \
+         <code>grade --scene NAME --format html=FILE</code> makes a page of one scene.</p>\n",
         says.join("; ")
     )
 }

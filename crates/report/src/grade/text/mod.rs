@@ -9,7 +9,7 @@ pub use table::{shortened, table};
 use super::{super::style::Style, no_points, points, score};
 use crate::foreign::{one_line, plain, printed};
 use crate::{number::counted, smallest, style::Look, words};
-use fosssim_findings::{Grade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
 
@@ -53,15 +53,14 @@ impl Text<'_> {
         let mut text = String::new();
         if self.shown == TextDetail::Table && grades.len() > 1 {
             let unfit = |grade: &Grade| {
-                let why = words::describe_unfit(grade)?;
-                Some(format!("{}: {}\n", table::shortened(&one_line(&grade.submission)), one_line(&why)))
+                let why = self.unfit(grade)?;
+                Some(format!("{}: {why}\n", table::shortened(&one_line(&grade.submission))))
             };
             return table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
         }
         for grade in grades {
             if self.shown == TextDetail::Line {
-                let why =
-                    words::describe_unfit(grade).map(|unfit| format!(": {}", one_line(&unfit))).unwrap_or_default();
+                let why = self.unfit(grade).map(|unfit| format!(": {unfit}")).unwrap_or_default();
                 let _ = writeln!(text, "{}{why}", self.verdict(grade));
             } else {
                 self.write_submission(&mut text, grade, grades.len() > 1);
@@ -102,6 +101,17 @@ impl Text<'_> {
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
     }
 
+    /// Returns the fault of the submission itself; a reader who can type the command gets the option that helps.
+    fn unfit(&self, grade: &Grade) -> Option<String> {
+        let option = match (grade.unfit(), self.closer) {
+            (Some(SubmissionFault::Milestone(other)), Some(_)) => {
+                format!(": grade it with --suite {}", other.definition().key)
+            }
+            _ => String::new(),
+        };
+        words::describe_unfit(grade).map(|unfit| one_line(&unfit) + &option)
+    }
+
     /// Returns the suite, what weakened the sandbox, and a build that failed.
     fn circumstances(&self, grade: &Grade) -> String {
         let mut text = format!("suite {}{}\n", one_line(&grade.suite), rules(grade));
@@ -109,8 +119,8 @@ impl Text<'_> {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
         let build = grade.failed_build();
-        if let (Some(unfit), None) = (words::describe_unfit(grade), build) {
-            let _ = writeln!(text, "{}", one_line(&unfit));
+        if let (Some(unfit), None) = (self.unfit(grade), build) {
+            let _ = writeln!(text, "{unfit}");
         }
         if let Some(build) = build {
             let most = if self.shown < TextDetail::Wrong { SHOWN_LINES } else { usize::MAX };
