@@ -60,7 +60,7 @@ impl ExplanationParts {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} checked"))),
             (About::Unfinished | About::Pairs(_), _) => (false, None),
-            (About::Mistake, _) => (true, Some(format!("reproduces {reproduced} of {samples} wrong steps"))),
+            (About::Mistake, _) => (true, Some(reproduces(*reproduced, *samples))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
         let mut details: Vec<String> = details(explanation).iter().map(|line| style.set(line)).collect();
@@ -69,6 +69,15 @@ impl ExplanationParts {
         }
         let example = explanation.example.as_ref().map(|example| example_lines(example, style)).unwrap_or_default();
         Self { is_likely, what: what(explanation), evidence, details, example }
+    }
+}
+
+/// Returns how many of the wrong steps that were tried a mistake reproduces: a trace may have more of them.
+fn reproduces(reproduced: u64, samples: u64) -> String {
+    match samples {
+        1 if reproduced == 1 => "reproduces the wrong step that was tried".to_owned(),
+        _ if reproduced == samples => format!("reproduces all {samples} wrong steps that were tried"),
+        _ => format!("reproduces {reproduced} of {samples} wrong steps that were tried"),
     }
 }
 
@@ -231,7 +240,7 @@ pub(crate) mod tests {
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
         insta::assert_snapshot!(lines(&explanations(), Style::Plain).join("\n"), @r"
-        likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps)
+        likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps that were tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           Can't be told apart here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 0, overlap polynomial

@@ -217,7 +217,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     }
     let text = Format::Text.render(&[grade]);
     assert!(text.contains("the same in 2 more scenes: Detection/b, Impulses/a"), "{text}");
-    assert_eq!(text.matches("1 scene as above").count(), 2, "{text}");
+    assert_eq!(text.matches("1 scene like Detection/a").count(), 2, "{text}");
 }
 
 /// Where a program crashes stands in every format at the top.

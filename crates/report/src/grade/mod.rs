@@ -3,6 +3,7 @@
 //! Names and program output are words of others. Each format removes their control characters by `plain` or `one_line`
 //! of `foreign`, and escapes what its own syntax gives a meaning. A test sends hostile words through every format.
 
+mod causes;
 mod changes;
 mod class;
 pub(crate) mod csv_table;
@@ -24,6 +25,8 @@ pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }
 
+pub use causes::{AlikeScenes, by_cause};
+pub(crate) use causes::{example, is_told, rank};
 pub(crate) use changes::lines as change_lines;
 pub use class::class;
 pub(crate) use class::{ClassFigures, SharedMistake, frequent, hardest, never_ran, same_programs};

@@ -3,10 +3,10 @@ use super::{
     Card,
     case::mistakes,
     document,
-    graded::{self, key, rank},
+    graded::{self, key},
     rendered, script, smallest,
 };
-use crate::{case::Case, diagnosis::Diagnosis, words::first_divergence};
+use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::first_divergence};
 use askama::Template;
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 

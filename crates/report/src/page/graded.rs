@@ -11,17 +11,17 @@ use super::{
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        change_lines, difference, extra, likely_mistakes, no_points, points, reached, score, speed_words, worth,
-        wrong_scenes,
+        by_cause, change_lines, difference, example, extra, is_told, likely_mistakes, no_points, points, reached,
+        score, speed_words, worth, wrong_scenes,
     },
     number::counted,
     words,
 };
 use askama::Template;
 use fosssim_findings::{
-    Build, Grade, GroupGrade, SceneGrade, Verdict, Visibility, located::LocatedFailure, smallest::SmallestScene,
+    Build, Grade, GroupGrade, SceneGrade, Visibility, located::LocatedFailure, smallest::SmallestScene,
 };
-use fosssim_mistakes::diagnose::{Explanation, is_named_in};
+use fosssim_mistakes::diagnose::Explanation;
 use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
@@ -61,7 +61,8 @@ impl GradePage<'_> {
             Audience::Staff => Cow::Borrowed(self.grade),
         };
         let grade = shown.as_ref();
-        let told = self.cards(grade);
+        let causes = by_cause(grade);
+        let told: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
         let tells_who =
             self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
         let content = GradeContent {
@@ -71,23 +72,12 @@ impl GradePage<'_> {
             has_scenes: grade.unfit().is_none(),
             tells_who,
             columns: if tells_who { 6 } else { 5 },
+            alike: causes.iter().map(Vec::len).collect(),
             told,
         };
         // The viewer is most of a page without cards.
         let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
         document(&format!("{}: {}", grade.submission, grade.verdict.name()), &rendered(&content), script)
-    }
-
-    /// Returns the scenes that have a card, the clearest first and the others in their order.
-    fn cards<'g>(&self, grade: &'g Grade) -> Vec<(&'g SceneGrade, Option<Card>)> {
-        let scenes = grade.scenes().filter(|scene| is_told(scene));
-        let mut told: Vec<_> = scenes.map(|scene| (scene, (self.card)(scene.card.as_deref()))).collect();
-        let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
-        let first = (0..told.len()).min_by_key(|&place| telling(told[place].0, told[place].1.as_ref(), &likely));
-        if let Some(first) = first {
-            told[..=first].rotate_right(1);
-        }
-        told
     }
 }
 
@@ -98,9 +88,11 @@ struct GradeContent<'a> {
     page: &'a GradePage<'a>,
     /// The part of the grade that the reader may see.
     grade: &'a Grade,
-    /// The scenes with something to tell, and which parts of their cards fit.
+    /// The scenes with something to tell, cause by cause, and which parts of their cards fit.
     told: Vec<(&'a SceneGrade, Option<Card>)>,
     rooms: Vec<Room>,
+    /// The number of scenes of each cause.
+    alike: Vec<usize>,
     has_scenes: bool,
     /// Whether the table of groups says who sees them; its columns.
     tells_who: bool,
@@ -125,13 +117,6 @@ impl GradeContent<'_> {
         if self.has_scenes { likely_mistakes(self.grade) } else { Vec::new() }
     }
 
-    /// Returns the scene that shows a mistake best.
-    fn shows(&self, mistake: &Explanation) -> Option<&SceneGrade> {
-        let named = self.told.iter().filter(|(scene, _)| is_named_in(mistake, &scene.explanations));
-        let best = named.min_by_key(|(scene, card)| telling(scene, card.as_ref(), std::slice::from_ref(mistake)));
-        best.map(|(scene, _)| *scene)
-    }
-
     /// Returns the first scene of a group that has something to tell.
     fn first_of(&self, group: &GroupGrade) -> Option<&SceneGrade> {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
@@ -150,11 +135,12 @@ impl GradeContent<'_> {
         self.told.iter().map(|(_, card)| card.as_ref())
     }
 
-    /// Returns the details of each scene.
-    fn articles(&self) -> Vec<Article<'_>> {
+    /// Returns the details of each scene, cause by cause.
+    fn articles(&self) -> Vec<Vec<Article<'_>>> {
         let mut outputs = if self.grade.shows_output { OUTPUTS } else { 0 };
         let told = self.told.iter().zip(&self.rooms);
-        told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs)).collect()
+        let mut articles = told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs));
+        self.alike.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
     }
 
     /// Returns how many scenes that have nothing to tell are accepted, and all of them.
@@ -170,22 +156,6 @@ pub(super) fn located(found: &LocatedFailure) -> String {
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
-/// Returns the rank of a scene among those to read first; the smallest rank comes first. The rank counts in this order:
-/// whether nothing was drawn; whether the rule books differ, so that it may be a consequence or round-off; which of the
-/// likely mistakes explains it, if any; how many other mistakes would have the same effect there; how large its motion
-/// is.
-fn telling(scene: &SceneGrade, card: Option<&Card>, likely: &[Explanation]) -> (bool, bool, usize, usize, usize) {
-    let own = &scene.explanations;
-    (card.is_none(), scene.differs.is_some(), rank(likely, own), own.len(), card.map_or(0, |card| card.sizes().1))
-}
-
-/// Returns the rank of the first of the likely mistakes among some explanations; other explanations come after all of
-/// them, and none at all comes last.
-pub(super) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
-    let named = likely.iter().position(|one| is_named_in(one, own));
-    named.unwrap_or(likely.len() + usize::from(own.is_empty()))
-}
-
 /// Returns the book that counts.
 fn books(grade: &Grade) -> String {
     let other = counted(grade.differing() as u64, "scene");
@@ -196,11 +166,6 @@ fn books(grade: &Grade) -> String {
         (fosssim_judge::Rules::Fair, _) => format!("by the fair rules; the original's differ in {other}"),
         (fosssim_judge::Rules::Both, _) => format!("by the original's rules; the fair ones differ in {other}"),
     }
-}
-
-/// Returns whether a scene has details to show.
-fn is_told(scene: &SceneGrade) -> bool {
-    scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
 /// Returns the points of a grade, or why there are none.
@@ -284,4 +249,9 @@ fn printed(heading: &str, output: &str, room: &mut usize) -> String {
         "<details class=\"table\"><summary>{heading}</summary><pre tabindex=\"0\" role=\"region\" \
          aria-label=\"{heading}\">{shown}{cut}</pre></details>\n"
     )
+}
+
+/// Returns how many more scenes have a cause.
+fn more(count: usize) -> String {
+    format!("{} with the same cause", counted(count as u64, "more scene"))
 }

@@ -342,7 +342,7 @@ fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
     }
 }
 
-/// A named mistake before what is not explained, what is meant before what might be, and of these the smallest motion.
+/// A named mistake comes before what is not explained, and of its scenes that with the fewest findings.
 #[test]
 fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let named = |scene: &str, id: &str| {
@@ -359,19 +359,24 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let called = |(result, _): &(SceneResult, _)| SceneResult { card: Some(result.scene.clone()), ..result.clone() };
     let results = scenes.iter().map(called).collect();
     let card = |name: Option<&str>| scenes.iter().find(|(result, _)| Some(&*result.scene) == name)?.1.clone();
-    let grade = Grade {
+    let mut grade = Grade {
         groups: vec![with_results(marking(Hints::Full), results)],
         verdict: Verdict::RuntimeError,
         ..crate::grade::samples::good()
     };
+    fosssim_mistakes::together::settle(&mut grade);
     let html = GradePage { grade: &grade, card: &card, class: None, reader: Audience::Staff }.html();
     let articles: Vec<&str> = html.split("<article ").skip(1).collect();
-    let order = [small, "Group/crash", large];
+    let order = [small, large, "Group/crash"];
     for (number, (article, scene)) in articles.iter().zip(order).enumerate() {
         assert!(article.contains(&format!("data-scene=\"{scene}\"")), "{scene}");
         assert_eq!(article.contains("<details class=\"scene\" open>"), number == 0, "{scene}");
     }
-    // Both the mistake and its group lead there.
+    // Other scenes with its cause are folded behind it.
+    assert!(articles[0].contains("<details class=\"alike\"><summary>1 more scene with the same cause</summary>"));
+    // Both the mistake and its group lead there, and a terminal names the same scene.
+    let text = crate::formats::Format::Text.render(&[grade.clone()]);
+    assert!(text.contains(&format!("Scene to look at first\n  WA {small}: ")), "{text}");
     let place = format!("<a href=\"#scene-{}\">{small}</a>", graded::key(small));
     assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::key(small))));
 }

@@ -2,7 +2,7 @@
 use super::{Text, verdict_look};
 use crate::foreign::{one_line, plain};
 use crate::{
-    grade::{change_lines, likely_mistakes, points, reached, speed_words, worth, wrong_scenes},
+    grade::{by_cause, change_lines, likely_mistakes, points, reached, speed_words, worth, wrong_scenes},
     number::counted,
     style::Look,
     table::{Align, Cell, Table},
@@ -54,10 +54,10 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     if grade.unfit().is_some() {
         return text;
     }
-    let first = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun));
-    if let Some(scene) = first {
+    let causes = by_cause(grade);
+    if let Some(scene) = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()) {
         let code = style.paint(verdict_look(scene.verdict), scene.verdict.code());
-        let _ = writeln!(text, "{}", style.paint(Look::Strong, "First scene that is not accepted"));
+        let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scene to look at first"));
         let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summary(scene)));
         for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
             let _ = writeln!(text, "  {line}");

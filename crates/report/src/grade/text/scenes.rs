@@ -4,7 +4,7 @@ use super::{super::phrases::some, Text, TextDetail, output, verdict_look};
 use crate::foreign::one_line;
 use crate::{
     explain,
-    grade::{difference, points, reached, text::SHOWN_LINES},
+    grade::{AlikeScenes, by_cause, difference, points, reached, text::SHOWN_LINES},
     number::counted,
     style::Look,
     words,
@@ -30,43 +30,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     groups.map(|group| scenes.group(group)).collect()
 }
 
-/// The cause of a scene's verdict, in words. Scenes with the same cause are described once.
-type SceneCause = (Verdict, Vec<String>);
-
-/// Returns the cause of a scene that is not accepted: the end of its program, its likely mistakes, or the kind of the
-/// first finding. A scene that the rule books judge differently has a cause of its own.
-fn cause(scene: &SceneGrade) -> Option<SceneCause> {
-    if scene.verdict.is_accepted() || scene.differs.is_some() {
-        return None;
-    }
-    if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
-        // If nothing is logged, the first place where that shows does not matter.
-        let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
-        return Some((scene.verdict, std::iter::once(words::ending(scene)).chain(details).collect()));
-    }
-    if scene.settled.is_empty() {
-        let first = scene.disclosure.as_ref()?.official().first_divergence.as_ref()?;
-        return Some((scene.verdict, vec![format!("{:?}", first.kind())]));
-    }
-    Some((scene.verdict, scene.settled.iter().map(words::explanation::what).collect()))
-}
-
-/// Returns the scenes of each cause.
-fn by_cause(grade: &Grade) -> BTreeMap<SceneCause, Vec<&str>> {
-    let mut scenes: BTreeMap<SceneCause, Vec<&str>> = BTreeMap::new();
-    for scene in grade.scenes() {
-        if let Some(cause) = cause(scene) {
-            scenes.entry(cause).or_default().push(&scene.scene);
-        }
-    }
-    scenes
-}
-
 struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
     /// Columns of the longest name.
     width: usize,
-    by_cause: BTreeMap<SceneCause, Vec<&'a str>>,
+    by_cause: Vec<AlikeScenes<'a>>,
 }
 
 impl<'a> Scenes<'a, '_> {
@@ -78,34 +46,38 @@ impl<'a> Scenes<'a, '_> {
         if let Some(note) = &group.note {
             text += &format!("  {}\n", one_line(&note.to_string()));
         }
-        let mut folded: BTreeMap<Verdict, u64> = BTreeMap::new();
+        let mut folded: BTreeMap<(Verdict, String), u64> = BTreeMap::new();
         for scene in group.scenes.iter().filter(|scene| self.is_folded(scene)) {
-            *folded.entry(scene.verdict).or_default() += 1;
+            let example = self.alike(scene).first().filter(|_| !scene.verdict.is_accepted());
+            let like = example.map_or_else(String::new, |example| format!(" like {}", one_line(&example.scene)));
+            *folded.entry((scene.verdict, like)).or_default() += 1;
         }
-        let row = |verdict: Verdict, count: u64, above: &str| {
+        let row = |((verdict, like), count): ((Verdict, String), u64)| {
             let code = style.paint(verdict_look(verdict), &format!("{:<3}", verdict.code()));
-            format!("  {code} {}{above}\n", counted(count, "scene"))
+            format!("  {code} {}{like}\n", counted(count, "scene"))
         };
-        if let Some(accepted) = folded.remove(&Verdict::Accepted) {
-            text += &row(Verdict::Accepted, accepted, "");
+        if folded.first_key_value().is_some_and(|((verdict, _), _)| verdict.is_accepted()) {
+            text.extend(folded.pop_first().map(row));
         }
         for scene in group.scenes.iter().filter(|scene| !self.is_folded(scene)) {
             text += &self.row(scene);
             text += &self.details(scene);
         }
-        text.extend(folded.into_iter().map(|(verdict, count)| row(verdict, count, " as above")));
+        text.extend(folded.into_iter().map(row));
         text
     }
 
     /// Returns whether a scene is only counted: it is accepted, or another one with its cause is described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
-            && (scene.verdict.is_accepted() || self.alike(scene).first().is_some_and(|first| *first != scene.scene))
+            && (scene.verdict.is_accepted()
+                || self.alike(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
 
-    /// Returns the scenes with the cause of this one, in order.
-    fn alike(&self, scene: &SceneGrade) -> &[&'a str] {
-        cause(scene).and_then(|cause| self.by_cause.get(&cause)).map_or(&[][..], Vec::as_slice)
+    /// Returns the scenes with the cause of this one.
+    fn alike(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
+        let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|one| one.scene == scene.scene);
+        self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
     }
 
     fn row(&self, scene: &SceneGrade) -> String {
@@ -126,10 +98,11 @@ impl<'a> Scenes<'a, '_> {
         }
         lines.extend(explain::lines(&scene.settled, self.options.style).iter().map(|line| one_line(line)));
         if let [first, alike @ ..] = self.alike(scene)
-            && *first == scene.scene
+            && first.scene == scene.scene
             && !alike.is_empty()
         {
-            let (many, names) = (counted(alike.len() as u64, "more scene"), some(alike, NAMED));
+            let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
+            let (many, names) = (counted(alike.len() as u64, "more scene"), some(&names, NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();

@@ -32,10 +32,12 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let right = since("right", &|changes| format!("+{}", changes.right.len()));
     let broke = since("broke", &|changes| format!("-{}", changes.broke.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
+    let names: Vec<&str> = grades.first().iter().flat_map(|grade| &grade.groups).map(|one| one.name.as_str()).collect();
+    let is_tests = names.iter().all(|name| name.len() > TESTS.len() && name.ends_with(TESTS));
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
-            let heading: String = one_line(&grades[0].groups[number].name).chars().take(8).collect();
-            of(&heading, false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
+            let name = if is_tests { names[number].trim_end_matches(TESTS) } else { names[number] };
+            of(&shortened(&one_line(name)), false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
         })
         .collect();
     let scenes = of("scenes", true, &|grade| {
@@ -54,6 +56,9 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
     rows(&chosen, grades, style)
 }
+
+/// The end of the course's names of groups, which headings do without.
+const TESTS: &str = "Tests";
 
 /// The greatest width of a name, in columns; of a longer one its two ends are shown.
 const NAME: usize = 40;

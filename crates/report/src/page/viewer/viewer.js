@@ -460,7 +460,7 @@ document.addEventListener("moment", ({ detail: { key, step } }) => {
 // Opens a card with its viewer.
 function unfold(article) {
   const card = article.querySelector("details.scene");
-  if (card) card.open = true;
+  for (const folded of [card, article.closest("details.alike")]) if (folded) folded.open = true;
   return article.querySelector(".stage") ? open(article) : null;
 }
 // What findings and calls are about is shown at a click.
@@ -500,15 +500,19 @@ async function visit(articles) {
 }
 // Many scenes are searched by their names, and by what is said of them.
 function search(articles) {
-  const scenes = articles.filter((article) => article.querySelector("details.scene"));
+  const scenes = articles.filter((one) => one.querySelector("details.scene") && !one.id.startsWith("small-"));
   if (scenes.length < 8) return;
   const count = el("output", { class: "hint" });
   const wish = el("input", {
     type: "search",
     oninput: () => {
-      for (const scene of scenes)
-        scene.hidden = !scene.textContent.toLowerCase().includes(wish.value.trim().toLowerCase());
-      count.textContent = wish.value.trim() && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
+      const wanted = wish.value.trim().toLowerCase();
+      for (const scene of scenes) scene.hidden = !scene.textContent.toLowerCase().includes(wanted);
+      for (const alike of document.querySelectorAll("details.alike")) {
+        alike.open = wanted !== "";
+        alike.hidden = !alike.querySelector("article:not([hidden])");
+      }
+      count.textContent = wanted && `${scenes.filter((scene) => !scene.hidden).length} of ${scenes.length}`;
     },
   });
   scenes[0].before(el("p", { class: "filter" }, el("label", {}, "Filter ", wish), " ", count));
