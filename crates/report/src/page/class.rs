@@ -2,6 +2,7 @@
 use super::{
     document,
     graded::key,
+    histogram,
     markup::{count_scenes, data, note},
     rendered,
     smallest::{parts, pre},
@@ -9,7 +10,8 @@ use super::{
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, frequent, hardest, likely_mistakes, never_ran, points, reached, same_programs,
+        ClassFigures, SharedMistake, example, frequent, hardest, likely_mistakes, never_ran, points, reached,
+        same_programs,
     },
     smallest::title,
     words::{self, explanation::what_or},
@@ -20,9 +22,6 @@ use fosssim_mistakes::diagnose::is_named_in;
 use std::{collections::BTreeMap, fmt::Write};
 
 const SCRIPT: &str = include_str!("class.js");
-
-/// Bars of the histogram.
-const BARS: usize = 10;
 
 /// The greatest number of characters of a likely mistake or a summary in a table.
 const SHORT: usize = 120;
@@ -52,7 +51,6 @@ impl ClassPage<'_> {
             class: self,
             mistakes: frequent(self.grades),
             is_compared: self.grades.iter().any(|grade| grade.before.is_some()),
-            differs: self.grades.iter().any(|grade| grade.differing() > 0),
         };
         document(&format!("Class: {}", suite(self.grades)), &rendered(&content), SCRIPT)
     }
@@ -66,8 +64,6 @@ struct ClassContent<'a> {
     mistakes: Vec<SharedMistake>,
     /// Whether there are points of an earlier grading.
     is_compared: bool,
-    /// Whether the rule books differ about a scene.
-    differs: bool,
 }
 
 /// Submissions with something in common.
@@ -122,7 +118,7 @@ impl ClassContent<'_> {
         let named = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.len() > 1);
         let named = named.map(|(number, SharedMistake { mistake, members })| {
             let first = &grades[members[0]];
-            let scene = first.scenes().find(|scene| is_named_in(mistake, &scene.explanations));
+            let scene = example(first, mistake);
             let smallest = members.iter().flat_map(|&number| &grades[number].smallest);
             Cluster {
                 heading: one_line(&what_or(mistake)),
@@ -198,17 +194,19 @@ fn reason(grade: &Grade) -> String {
     if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") }
 }
 
-/// Returns why the rule books differ about scenes of a submission, with the number of scenes.
-fn causes(grade: &Grade) -> String {
-    let mut causes: BTreeMap<String, (usize, bool)> = BTreeMap::new();
-    for cause in grade.scenes().filter_map(|scene| scene.differs) {
-        causes.entry(cause.to_string()).or_insert((0, cause.original_fails())).0 += 1;
+/// Returns why the rule books differ, and the submissions in which they do, each with the number of scenes.
+fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
+    let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
+    for (number, grade) in grades.iter().enumerate() {
+        for cause in grade.scenes().filter_map(|scene| scene.differs) {
+            let verdict = if cause.original_fails() { "rejects" } else { "accepts" };
+            let words = format!("The original {verdict} them: {cause}");
+            *found.entry(words).or_default().entry(number).or_default() += 1;
+        }
     }
-    let words = causes.into_iter().map(|(cause, (count, fails))| {
-        let verdict = if fails { "the original fails them" } else { "the original passes them" };
-        format!("{count}: {cause} ({verdict})")
-    });
-    words.collect::<Vec<_>>().join("; ")
+    let mut found: Vec<_> = found.into_iter().map(|(words, members)| (words, Vec::from_iter(members))).collect();
+    found.sort_by_key(|(_, members)| std::cmp::Reverse(members.len()));
+    found
 }
 
 /// Returns the beginning of a long text.
@@ -261,7 +259,7 @@ fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
     match scene.verdict {
         Verdict::Accepted => None,
         Verdict::NotRun | Verdict::Unusable | Verdict::CompileError => Some("n"),
-        verdict if verdict.is_wrong_trace() => Some("w"),
+        Verdict::WrongAnswer | Verdict::Unwritten => Some("w"),
         _ => Some("e"),
     }
 }
@@ -299,29 +297,9 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     several
 }
 
-/// Returns how many submissions reach which share of the points, each with the height of its bar.
-fn histogram(grades: &[Grade]) -> Option<[(usize, usize); BARS]> {
-    let shares: Vec<f64> = grades
-        .iter()
-        .filter_map(|grade| Some(grade.points? / grade.max_points))
-        .filter(|share| share.is_finite())
-        .collect();
-    if shares.is_empty() {
-        return None;
-    }
-    let mut counts = [0_usize; BARS];
-    for share in shares {
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            clippy::cast_precision_loss,
-            reason = "a bar"
-        )]
-        let bar = (share.clamp(0.0, 1.0) * BARS as f64) as usize;
-        counts[bar.min(BARS - 1)] += 1;
-    }
-    let most = counts.iter().copied().max().unwrap_or(1).max(1);
-    Some(counts.map(|count| (count, 120 * count / most)))
+/// Renders how many submissions reach which share of the points.
+fn bars(grades: &[Grade]) -> String {
+    histogram::html(grades.iter().filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
 
 #[cfg(test)]

@@ -1,0 +1,50 @@
+//! The points of a class as bars. The server's pages show these bars, too.
+use std::fmt::Write;
+
+/// The number of bars.
+const BARS: usize = 10;
+
+/// The height of the highest bar.
+const HEIGHT: usize = 120;
+
+/// Renders how many submissions reach which share of the points, of 1; nothing without any.
+pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
+    let mut counts = [0_usize; BARS];
+    for share in shares.filter(|share| share.is_finite()) {
+        // Of the bars that begin at or below the share, the last one; a share of 1 belongs to the last bar.
+        let bar = (1..BARS).filter(|&bar| share * BARS as f64 >= bar as f64).count();
+        counts[bar] += 1;
+    }
+    let most = counts.into_iter().max().unwrap_or(0);
+    if most == 0 {
+        return String::new();
+    }
+    let words: Vec<String> = counts
+        .iter()
+        .enumerate()
+        .map(|(bar, count)| format!("{} to {} %: {count}", 10 * bar, 10 * (bar + 1)))
+        .collect();
+    let mut svg = format!(
+        "<svg class=\"fp\" viewBox=\"0 0 340 180\" width=\"340\" height=\"180\" role=\"img\" aria-label=\"Points of the \
+         class: {}\"><title>Points of the class</title>\n<text class=\"ft\" x=\"10\" y=\"14\">students by points, in percent \
+         of all</text>\n",
+        words.join(", ")
+    );
+    for (bar, count) in counts.into_iter().enumerate() {
+        let (left, height) = (10 + 31 * bar, HEIGHT * count / most);
+        if count > 0 {
+            let _ = write!(
+                svg,
+                "<rect class=\"f1\" x=\"{}\" y=\"{}\" width=\"27\" height=\"{height}\"/><text x=\"{}\" y=\"{}\" \
+                 text-anchor=\"middle\">{count}</text>",
+                left + 2,
+                152 - height,
+                left + 15,
+                147 - height
+            );
+        }
+        let _ = writeln!(svg, "<text class=\"ft\" x=\"{left}\" y=\"170\" text-anchor=\"middle\">{}</text>", 10 * bar);
+    }
+    svg + "<text class=\"ft\" x=\"320\" y=\"170\" text-anchor=\"middle\">100</text><line class=\"ax\" x1=\"10\" y1=\"152\" \
+           x2=\"320\" y2=\"152\"/></svg>"
+}
