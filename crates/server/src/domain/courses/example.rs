@@ -7,8 +7,8 @@ use crate::domain::{
 use crate::{problem::Problem, values};
 
 /// The course that is made; an existing course of this name is taken for it.
-const COURSE: (&str, &str) = ("example", "Example");
-const ASSIGNMENT: (&str, &str) = ("m1", "Milestone one");
+const COURSE: (&str, &str) = ("example", "Example course");
+const ASSIGNMENT: (&str, &str) = ("m1", "Theme 2, Milestone 2: continuous-time collisions");
 const STUDENT: (&str, &str) = ("student", "A student");
 
 impl App {

@@ -9,7 +9,7 @@ use super::{
     see, show, text,
 };
 use crate::{
-    domain::{Account, Admin, Event, Queue, TokenInfo},
+    domain::{Account, Admin, CourseSize, Event, Queue, TokenInfo},
     lti::Platform,
     problem::Problem,
 };
@@ -32,6 +32,7 @@ struct AdminPage {
     frame: PageFrame,
     /// The subject.
     part: (&'static str, &'static str),
+    courses: Vec<CourseSize>,
     accounts: Vec<Account>,
     look: People,
     /// The address of the next page of accounts.
@@ -62,6 +63,7 @@ async fn make(admin: &Admin, end: &str, look: People, link: Option<String>, toke
     show(&AdminPage {
         frame: frame.then(format!("/admin{}", part.0), part.1),
         part,
+        courses: admin.course_sizes().await?,
         accounts,
         look,
         after,

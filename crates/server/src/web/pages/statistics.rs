@@ -5,6 +5,10 @@ use crate::{
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
+/// The bars of the class page that `grade` writes.
+#[path = "../../../../report/src/page/histogram.rs"]
+mod histogram;
+
 /// Verdicts in short of work of which nothing ran: unusable, or not built.
 const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
@@ -48,6 +52,8 @@ pub(super) struct Statistics {
     pub(super) parts: Vec<(&'static str, &'static str, usize)>,
     /// Mean and median of the points of all students whose work ran, in percent; `None` without such work.
     pub(super) points: Option<(String, String)>,
+    /// These points as bars.
+    pub(super) bars: String,
     /// Mistakes that students are likely to have made, the most frequent first.
     pub(super) mistakes: Vec<SharedBy>,
     /// Programs that several students handed in, byte for byte.
@@ -68,6 +74,7 @@ impl Statistics {
             students: standings.len(),
             parts: PARTS.map(|(name, words)| (name, words, count(name))).to_vec(),
             points: points.map(|count| (number(mean(count)), number(middle(count)))),
+            bars: histogram::html(shares.iter().map(|share| share / 100.0)),
             mistakes: find_shared(standings, mistake),
             same: find_shared(standings, |counts| Some(counts.digest.as_str()).filter(|digest| !digest.is_empty()))
                 .into_iter()

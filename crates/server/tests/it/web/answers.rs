@@ -75,7 +75,7 @@ async fn the_hourly_limit_says_until_when(fresh: Fresh) {
     let ada = server.member(&admin, "physics", "ada", "student");
     set(&admin, true, r#"{"per_hour": 2}"#);
     let page = ada.get("/c/physics/a/m1").expect(200).text();
-    assert!(page.contains("At most 2 in an hour.") && page.contains("at most 128 MiB"), "{page}");
+    assert!(page.contains("at most 2 uploads in an hour.") && page.contains("at most 128 MiB"), "{page}");
     let first = ada.submit("physics", &program("AC", 1));
     ada.submit("physics", &program("AC", 2));
     let mut transaction = fresh.database.begin().await.expect("a transaction");
