@@ -83,13 +83,7 @@ async function mark_all() {
     rows = [],
     taken = new Set();
   try {
-    const { suite } = marks;
-    const begun = await marks.oracle.ask(
-      suite
-        ? { do: "suite", scenes: suite.scenes, is_for_students: suite.isForStudents ?? false }
-        : { do: "suite", suite: $("suite").value },
-      { blobs: suite ? [suite.text, ...suite.xml] : [] },
-    );
+    const begun = await askSuite();
     if (!begun) return;
     const names = begun.value.groups.flatMap(({ name, scenes }) => scenes.map((scene) => ({ group: name, scene })));
     const below = beginning(names);
@@ -163,19 +157,18 @@ function showMarks(suite, grade, rows, strange) {
     : [];
   const look = ({ scene, file }, words) =>
     file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, words) : words;
-  const mistakes = new Map();
-  for (const row of rows)
-    if (row.likely && !row.accepted) mistakes.set(row.likely, [...(mistakes.get(row.likely) ?? []), row]);
-  const likely = [...mistakes]
-    .sort((a, b) => b[1].length - a[1].length)
-    .map(([words, own]) =>
-      el(
-        "details",
-        { class: "card mistake", open: mistakes.size === 1 },
-        el("summary", {}, words, el("span", { class: "hint" }, ` (${counted(own.length, "scene")})`)),
-        el("ul", {}, ...own.map((row) => el("li", {}, look(row, row.scene)))),
-      ),
-    );
+  // The scene that shows a cause best comes first.
+  const causes = grade.causes
+    .map(({ words, scenes }) => [words, scenes.map((scene) => rows.find((row) => row.scene === scene))])
+    .filter(([, own]) => !own[0].isMissing);
+  const likely = causes.map(([words, own]) =>
+    el(
+      "details",
+      { class: "card mistake", open: causes.length === 1 },
+      el("summary", {}, words, el("span", { class: "hint" }, ` (${counted(own.length, "scene")})`)),
+      el("ul", {}, ...own.map((row) => el("li", {}, look(row, row.scene)))),
+    ),
+  );
   const groups = suite.groups.map(({ name, scenes }, number) => {
     const own = rows.filter((row) => row.group === name),
       good = own.filter((row) => row.accepted).length;
@@ -267,6 +260,64 @@ function lookAt(scene, file) {
     number < 0 ? sceneOf(scene) : { name: marks.suite.scenes[number], xml: marks.suite.xml[number] },
   );
 }
+
+// Asks for the suite that is chosen.
+function askSuite() {
+  const { suite } = marks;
+  return marks.oracle.ask(
+    suite
+      ? { do: "suite", scenes: suite.scenes, is_for_students: suite.isForStudents ?? false }
+      : { do: "suite", suite: $("suite").value },
+    { blobs: suite ? [suite.text, ...suite.xml] : [] },
+  );
+}
+
+// A scene's XML: a dropped or a course's own one, or one of those inside.
+async function xmlOf(scene) {
+  const number = marks.suite?.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene) ?? -1;
+  if (number >= 0) return marks.suite.xml[number];
+  const answer = await marks.oracle.ask({ do: "scene", name: scene });
+  return answer && answer.parts[0];
+}
+
+// A script with all scenes in it, which runs a program on each.
+async function saveScript() {
+  const begun = await askSuite();
+  if (!begun) return;
+  const parts = [
+    `#!/bin/sh
+# Runs a program on each scene: sh make-traces.sh ./FOSSSim
+# Then drop the folder "traces" on the page.
+program=\${1:-./FOSSSim}
+run() {
+  mkdir -p "traces/\$(dirname "$1")"
+  cat > "traces/$1.xml"
+  "$program" -s "traces/$1.xml" -d 0 -o "traces/$1.bin" || echo "$1: the program ended with code $?" >&2
+}
+`,
+  ];
+  for (const scene of begun.value.groups.flatMap(({ scenes }) => scenes))
+    parts.push(`run '${scene.replaceAll("'", `'\\''`)}' <<'END_OF_SCENE'\n${text(await xmlOf(scene)).trimEnd()}\nEND_OF_SCENE\n`);
+  save("make-traces.sh", bytesOf(parts.join("")), "text/x-shellscript");
+}
+$("save-script").addEventListener("click", () => saveScript().catch(({ message }) => ($("marks-said").textContent = message)));
+// A wrong trace, and right ones of scenes beside its own.
+$("example-all").addEventListener("click", async () => {
+  const flawed = await marks.oracle.ask({ do: "example" });
+  if (!flawed) return;
+  const own = flawed.value.scene;
+  const group = (await inside).flatMap(({ groups }) => groups).find(({ group }) => own.startsWith(`${group}/`));
+  const found = [{ path: `${own}.bin`, file: new File([flawed.parts[0]], "flawed.bin") }];
+  for (const name of group.names.slice(0, 6)) {
+    const scene = `${group.group}/${name}`;
+    if (scene === own) continue;
+    await marks.oracle.ask({ do: "simulate", scene: `${scene}.xml` }, { blobs: [await xmlOf(scene)] });
+    const trace = await marks.oracle.ask({ do: "trace" });
+    if (!trace) return;
+    found.push({ path: `${scene}.bin`, file: new File([trace.parts[0]], `${name}.bin`) });
+  }
+  takeFolder("examples", found);
+});
 
 $("pick-folder").addEventListener("change", ({ target }) => {
   const files = [...target.files].map((file) => ({ path: file.webkitRelativePath.replace(/^[^/]*\//, ""), file }));

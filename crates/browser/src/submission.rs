@@ -92,14 +92,12 @@ impl DroppedSubmission {
         if self.is_for_students {
             cut_result(self.plan.student_hints(&task.name), &mut result);
         }
-        let likely = result.explanations.first().map(explanation::what);
         let value = json!({
             "verdict": result.verdict.name(),
             "accepted": result.verdict == Verdict::Accepted,
             "isMissing": matches!(result.reason, Reason::NoTrace),
             "right": result.right_steps,
             "steps": result.steps,
-            "likely": likely,
             "why": words::summary(&result),
         });
         self.results[asked.number] = Some(result);
@@ -114,7 +112,19 @@ impl DroppedSubmission {
         let points = |reached, most| json!({ "points": grade::reached(reached), "of": grade::points(most) });
         let scenes: Vec<Value> = graded.scenes().map(|scene| points(scene.points, scene.max_points)).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
+        let cause = |scenes: &grade::AlikeScenes<'_>| -> Value {
+            let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
+            let likely: Vec<String> = scenes[0].settled.iter().map(explanation::what).collect();
+            let words = if likely.is_empty() { words::summary(scenes[0]) } else { likely.join(" ") };
+            json!({ "words": words, "scenes": names })
+        };
+        let causes: Vec<Value> = grade::by_cause(&graded)
+            .iter()
+            .filter(|scenes| !scenes[0].settled.is_empty() || scenes.len() > 1)
+            .map(cause)
+            .collect();
         let value = json!({
+            "causes": causes,
             "points": grade::reached(graded.points),
             "of": grade::points(graded.max_points),
             "verdict": graded.verdict.name(),
