@@ -138,7 +138,7 @@ def test_pairs_are_those_of_detect():
 
 
 def test_the_notebook_runs_anywhere(tmp_path):
-    book = json.loads((ROOT / "python/examples/trace.ipynb").read_text())
+    book = json.loads((Path(fosssim.__file__).parent / "examples/trace.ipynb").read_text())
     names: dict = {}
     os.chdir(tmp_path)
     for cell in book["cells"]:
