@@ -17,6 +17,8 @@ pub(crate) struct GradeInFile {
     pub(crate) code: String,
     pub(crate) points: Option<Number>,
     pub(crate) max_points: Option<Number>,
+    /// The fault of the submission itself, in a sentence.
+    pub(crate) unfit: Option<String>,
     /// The mistakes that explain the wrong scenes together, likeliest first.
     #[serde(default)]
     pub(crate) likely_mistakes: Vec<LikelyInFile>,

@@ -69,6 +69,10 @@ view! {
         sandbox: Vec<String> = grade.layers.clone(),
         /// Weaknesses of the sandbox.
         warnings: Vec<String> = grade.warnings.iter().map(|warning| plain(warning)).collect(),
+        /// The fault of the submission itself in a sentence, such as a program of another milestone; left out where
+        /// there is none.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        unfit: Option<String> = words::describe_unfit(grade).map(|unfit| plain(&unfit)),
         /// The way the build ended; null if the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
         /// The contents that the scenes have in common in which the program crashes or runs into a limit; null if

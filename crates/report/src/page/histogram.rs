@@ -5,7 +5,7 @@ use std::fmt::Write;
 const BARS: usize = 10;
 
 /// The height of the highest bar.
-const HEIGHT: usize = 120;
+const HEIGHT: usize = 108;
 
 /// Renders how many submissions reach which share of the points, of 1; nothing without any.
 pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {

@@ -24,8 +24,9 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let scenes = grade.scenes();
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     let mut summary = format!("{accepted} of {} scenes accepted", scenes.len());
-    if let Some(mistake) = grade.likely_mistakes.first() {
-        summary = format!("{summary}; {}", mistake.text);
+    let likely = || grade.likely_mistakes.first().map(|mistake| &mistake.text);
+    if let Some(reason) = grade.unfit.as_ref().or_else(likely) {
+        summary = format!("{summary}; {reason}");
     }
     Ok(Outcome {
         verdict: grade.verdict.clone(),
@@ -69,5 +70,9 @@ mod tests {
         std::fs::write(&file, grade).expect("a file");
         let graded = read_grade(&file).expect("a grade");
         assert_eq!(graded.summary, "0 of 1 scenes accepted; The impulse lacks a factor.");
+        // A fault of the submission itself explains everything.
+        std::fs::write(&file, grade.replace("\"points\": 0,", "\"points\": 0, \"unfit\": \"no program\","))
+            .expect("a file");
+        assert_eq!(read_grade(&file).expect("a grade").summary, "0 of 1 scenes accepted; no program");
     }
 }

@@ -42,15 +42,17 @@ pub struct Request {
 /// The state of an assignment, for the table of its course.
 #[derive(Debug, Clone)]
 pub struct Overview {
-    /// Students who handed something in.
+    /// Students of the course.
     pub students: i64,
-    /// The number of their submissions.
+    /// Those of them who handed something in.
+    pub handed_in: i64,
+    /// The number of submissions.
     pub submissions: i64,
     /// The number of unanswered requests of students.
     pub requests: i64,
 }
 
-from_row! { Overview { students, submissions, requests } }
+from_row! { Overview { students, handed_in, submissions, requests } }
 from_row! { Request { submission, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
@@ -238,11 +240,14 @@ impl Member {
             return Ok(None);
         }
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT count(DISTINCT submission.account) AS students, count(*) AS submissions,
+        let statement = "SELECT count(DISTINCT member.account) AS handed_in, count(*) AS submissions,
+            (SELECT count(*) FROM member WHERE member.course = ? AND member.role = 'student') AS students,
             (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
                 WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests
-            FROM submission WHERE submission.assignment = ?";
-        Ok(transaction.find(statement, values![assignment.id, assignment.id]).await?)
+            FROM submission LEFT JOIN member ON member.account = submission.account AND member.course = ?
+               AND member.role = 'student'
+            WHERE submission.assignment = ?";
+        Ok(transaction.find(statement, values![self.course, assignment.id, self.course, assignment.id]).await?)
     }
 
     /// Returns the time until which this member may hand in.

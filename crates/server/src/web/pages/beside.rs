@@ -9,7 +9,7 @@ use crate::{
 };
 use askama::Template;
 use serde::Deserialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
 /// The other submission: its number on this server, or the login of a student, whose last submission is meant.
@@ -25,31 +25,34 @@ struct ComparisonPage {
     frame: PageFrame,
     slug: String,
     both: [Submission; 2],
-    scenes: Vec<DifferingScene>,
+    /// The number of scenes on which they differ.
+    count: usize,
+    kinds: DifferingScenes,
 }
 
-/// A scene on which they differ.
-struct DifferingScene {
-    scene: String,
-    /// Both verdicts in short.
-    codes: [String; 2],
-}
+/// The scenes that two results judge differently, by both verdicts in short.
+type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
 
-impl DifferingScene {
-    /// Returns the part of an address that leads to the scene in a report.
-    fn place(&self) -> String {
-        byte_serialize(self.scene.as_bytes()).collect()
-    }
+/// The greatest number of scenes of a kind that are not folded.
+const FEW: usize = 6;
+
+/// Returns the part of an address that leads to a scene in a report.
+fn place(scene: &str) -> String {
+    byte_serialize(scene.as_bytes()).collect()
 }
 
 /// Returns the scenes that two results judge differently.
-fn differing(one: &FailedScenes, other: &FailedScenes) -> Vec<DifferingScene> {
+fn differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
     let code = |of: &FailedScenes, scene: &String| of.get(scene).map_or("AC", String::as_str).to_owned();
-    let rows = names
-        .into_iter()
-        .map(|scene| DifferingScene { scene: scene.clone(), codes: [code(one, scene), code(other, scene)] });
-    rows.filter(|row| row.codes[0] != row.codes[1]).collect()
+    let mut kinds = DifferingScenes::new();
+    for scene in names {
+        let codes = [code(one, scene), code(other, scene)];
+        if codes[0] != codes[1] {
+            kinds.entry(codes).or_default().push(scene.clone());
+        }
+    }
+    kinds
 }
 
 pub(super) async fn page(
@@ -69,10 +72,10 @@ pub(super) async fn page(
     let results = [result(&one)?, result(&other)?];
     let kept = staff.kept_results(&results).await?;
     let [Some(first), Some(second)] = results.map(|result| kept.get(&result)) else { return Err(missing()) };
-    let scenes = differing(&first.failed, &second.failed);
+    let kinds = differing(&first.failed, &second.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
     let frame = grades::frame(&staff, &assignment).then(address, "Side by side");
-    show(&ComparisonPage { frame, slug, both: [one, other], scenes })
+    show(&ComparisonPage { frame, slug, both: [one, other], count: kinds.values().map(Vec::len).sum(), kinds })
 }
 
 #[cfg(test)]
@@ -84,9 +87,11 @@ mod tests {
         let of = |scenes: &[(&str, &str)]| -> FailedScenes {
             scenes.iter().map(|(scene, code)| ((*scene).to_owned(), (*code).to_owned())).collect()
         };
-        let rows =
-            differing(&of(&[("a", "WA"), ("b", "WA"), ("c", "TLE")]), &of(&[("b", "WA"), ("c", "WA"), ("d", "WA")]));
-        let told: Vec<String> = rows.iter().map(|row| format!("{} {}", row.scene, row.codes.join(" "))).collect();
-        assert_eq!(told, ["a WA AC", "c TLE WA", "d AC WA"]);
+        let (one, other) =
+            (of(&[("a", "WA"), ("b", "WA"), ("c", "TLE"), ("e", "WA")]), of(&[("b", "WA"), ("c", "WA"), ("d", "WA")]));
+        let kinds = differing(&one, &other);
+        let told: Vec<String> =
+            kinds.iter().map(|(codes, scenes)| format!("{}: {}", codes.join(" "), scenes.join(" "))).collect();
+        assert_eq!(told, ["AC WA: d", "TLE WA: c", "WA AC: a e"]);
     }
 }
