@@ -72,12 +72,12 @@ impl ExplanationParts {
     }
 }
 
-/// Returns how many of the wrong steps that were tried a mistake reproduces: a trace may have more of them.
+/// Returns how many of the wrong steps tried a mistake reproduces: a trace may have more of them.
 fn reproduces(reproduced: u64, samples: u64) -> String {
     match samples {
-        1 if reproduced == 1 => "reproduces the wrong step that was tried".to_owned(),
-        _ if reproduced == samples => format!("reproduces all {samples} wrong steps that were tried"),
-        _ => format!("reproduces {reproduced} of {samples} wrong steps that were tried"),
+        1 if reproduced == 1 => "reproduces the wrong step tried".to_owned(),
+        _ if reproduced == samples => format!("reproduces all {samples} wrong steps tried"),
+        _ => format!("reproduces {reproduced} of {samples} wrong steps tried"),
     }
 }
 
@@ -240,7 +240,7 @@ pub(crate) mod tests {
     #[test]
     fn the_likeliest_mistake_comes_first_with_all_that_is_known() {
         insta::assert_snapshot!(lines(&explanations(), Style::Plain).join("\n"), @r"
-        likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps that were tried)
+        likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           Can't be told apart here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 0, overlap polynomial

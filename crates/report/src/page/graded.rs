@@ -250,8 +250,3 @@ fn printed(heading: &str, output: &str, room: &mut usize) -> String {
          aria-label=\"{heading}\">{shown}{cut}</pre></details>\n"
     )
 }
-
-/// Returns how many more scenes have a cause.
-fn more(count: usize) -> String {
-    format!("{} with the same cause", counted(count as u64, "more scene"))
-}

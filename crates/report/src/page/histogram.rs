@@ -19,15 +19,12 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
     if most == 0 {
         return String::new();
     }
-    let words: Vec<String> = counts
-        .iter()
-        .enumerate()
-        .map(|(bar, count)| format!("{} to {} %: {count}", 10 * bar, 10 * (bar + 1)))
-        .collect();
+    let words = |(bar, count): (usize, &usize)| format!("{} to {} %: {count}", 10 * bar, 10 * (bar + 1));
+    let words: Vec<String> = counts.iter().enumerate().map(words).collect();
     let mut svg = format!(
-        "<svg class=\"fp\" viewBox=\"0 0 340 180\" width=\"340\" height=\"180\" role=\"img\" aria-label=\"Points of the \
-         class: {}\"><title>Points of the class</title>\n<text class=\"ft\" x=\"10\" y=\"14\">students by points, in percent \
-         of all</text>\n",
+        "<svg class=\"fp\" viewBox=\"0 0 340 180\" width=\"340\" height=\"180\" role=\"img\" aria-label=\"Points of \
+         the class: {}\"><title>Points of the class</title>\n<text class=\"ft\" x=\"10\" y=\"14\">students by points, \
+         in percent of all</text>\n",
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {
@@ -45,6 +42,6 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
         }
         let _ = writeln!(svg, "<text class=\"ft\" x=\"{left}\" y=\"170\" text-anchor=\"middle\">{}</text>", 10 * bar);
     }
-    svg + "<text class=\"ft\" x=\"320\" y=\"170\" text-anchor=\"middle\">100</text><line class=\"ax\" x1=\"10\" y1=\"152\" \
-           x2=\"320\" y2=\"152\"/></svg>"
+    svg + "<text class=\"ft\" x=\"320\" y=\"170\" text-anchor=\"middle\">100</text><line class=\"ax\" x1=\"10\" \
+           y1=\"152\" x2=\"320\" y2=\"152\"/></svg>"
 }

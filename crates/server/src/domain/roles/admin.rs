@@ -6,7 +6,7 @@ use crate::domain::{
     view::{self, Account, Course, Entry, Event, Queue},
 };
 use crate::{
-    db::{DbError, Row, Transaction},
+    db::{DbError, Transaction, from_row},
     problem::{Problem, ensure},
     values,
 };
@@ -17,16 +17,17 @@ pub struct Admin {
     pub(crate) app: App,
 }
 
-/// A course with its staff, and how much is in it.
+/// A course with the logins of its staff, and how much is in it.
 pub struct CourseSize {
     pub(crate) slug: String,
     pub(crate) title: String,
-    /// The logins of its staff.
-    pub(crate) staff: Vec<String>,
+    pub(crate) staff: Option<String>,
     pub(crate) students: i64,
     pub(crate) assignments: i64,
     pub(crate) submissions: i64,
 }
+
+from_row! { CourseSize { slug, title, staff, students, assignments, submissions } }
 
 /// Makes a course of this name and title, and returns its number.
 pub(in crate::domain) async fn make_course(
@@ -71,31 +72,15 @@ impl Admin {
     /// When the database does not answer.
     pub async fn course_sizes(&self) -> Result<Vec<CourseSize>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT course.slug, account.login FROM course
-            JOIN member ON member.course = course.id AND member.role = 'staff'
-            JOIN account ON account.id = member.account ORDER BY account.login";
-        let staff = transaction.rows(statement, values![]).await?;
-        let staff: Vec<(String, String)> =
-            staff.iter().map(|row| Ok((row.text("slug")?, row.text("login")?))).collect::<Result<_, DbError>>()?;
         let statement = "SELECT slug, title,
+               (SELECT string_agg(login, ', ') FROM account JOIN member ON member.account = account.id
+                   WHERE member.course = course.id AND role = 'staff') AS staff,
                (SELECT count(*) FROM member WHERE member.course = course.id AND role = 'student') AS students,
                (SELECT count(*) FROM assignment WHERE assignment.course = course.id) AS assignments,
                (SELECT count(*) FROM submission JOIN assignment ON assignment.id = submission.assignment
                    WHERE assignment.course = course.id) AS submissions
             FROM course ORDER BY slug";
-        let read = |row: &Row| {
-            let slug = row.text("slug")?;
-            Ok(CourseSize {
-                title: row.text("title")?,
-                staff: staff.iter().filter(|(of, _)| *of == slug).map(|(_, login)| login.clone()).collect(),
-                students: row.int("students")?,
-                assignments: row.int("assignments")?,
-                submissions: row.int("submissions")?,
-                slug,
-            })
-        };
-        let rows = transaction.rows(statement, values![]).await?;
-        Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
+        Ok(transaction.all(statement, values![]).await?)
     }
 
     /// Returns accounts whose login or name has these words, after this login: a page of them, and whether there are

@@ -32,12 +32,6 @@ struct StudentPage {
     seen: i64,
 }
 
-impl StudentPage {
-    fn change(&self, id: &i64) -> &str {
-        self.changes.get(id).map_or("", String::as_str)
-    }
-}
-
 #[derive(Template)]
 #[template(path = "import.html")]
 struct ImportPage {

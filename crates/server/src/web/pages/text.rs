@@ -91,11 +91,6 @@ pub(super) fn grade_points(submission: &Submission) -> String {
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
-/// Returns a number of students.
-pub(super) fn students(count: usize) -> String {
-    format!("{count} {}", if count == 1 { "student" } else { "students" })
-}
-
 /// Returns the state of a submission, in words.
 pub(super) fn state(state: &str) -> &'static str {
     match state {
