@@ -389,6 +389,24 @@ test("a folder of traces gets the points of the suite, as grade --traces gives t
   await close();
 });
 
+test("who has no traces sees some, and gets a script that makes them", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  await page.locator("#tab-submission").click();
+  await page.getByRole("button", { name: "See some traces" }).click();
+  await page.locator("#marks-list h2").first().waitFor();
+  assert.match(await page.locator("#marks-list").innerText(), /A product is missing .*\(1 scene\)/);
+  await page.getByText("The folder and its suite").click();
+  const { bytes } = await saved(page, "Save a script", page.locator("#save-script"));
+  const made = join(folder, "made");
+  mkdirSync(made);
+  writeFileSync(join(made, "make-traces.sh"), bytes);
+  execFileSync("sh", ["make-traces.sh", join(programs, "fosssim-sample")], { cwd: made, stdio: "ignore" });
+  const { status, stdout } = oracle("grade", "--traces", "made/traces");
+  assert.equal(status, 0, stdout);
+  assert.deepEqual(complaints, []);
+  await close();
+});
+
 test("a suite of one's own brings its scenes along; what is wrong with it is told with its place", async () => {
   const { page, complaints, close } = await opened(browser, html);
   const course = join(folder, "course");
