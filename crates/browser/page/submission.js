@@ -297,10 +297,14 @@ run() {
 `,
   ];
   for (const scene of begun.value.groups.flatMap(({ scenes }) => scenes))
-    parts.push(`run '${scene.replaceAll("'", `'\\''`)}' <<'END_OF_SCENE'\n${text(await xmlOf(scene)).trimEnd()}\nEND_OF_SCENE\n`);
+    parts.push(
+      `run '${scene.replaceAll("'", `'\\''`)}' <<'END_OF_SCENE'\n${text(await xmlOf(scene)).trimEnd()}\nEND_OF_SCENE\n`,
+    );
   save("make-traces.sh", bytesOf(parts.join("")), "text/x-shellscript");
 }
-$("save-script").addEventListener("click", () => saveScript().catch(({ message }) => ($("marks-said").textContent = message)));
+$("save-script").addEventListener("click", () =>
+  saveScript().catch(({ message }) => ($("marks-said").textContent = message)),
+);
 // A wrong trace, and right ones of scenes beside its own. Its mistake is one of edges, so these have none.
 $("example-all").addEventListener("click", async () => {
   const flawed = await marks.oracle.ask({ do: "example" });

@@ -118,6 +118,7 @@ impl SubmissionGrading<'_> {
     /// Returns the milestone to which the program seems to belong, if its library lacks what the suite's has. It is
     /// searched if no scene is accepted, and half of them leave no readable trace.
     fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
+        let expected = self.grader.plan.milestone?;
         let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
         let unread = |verdict| matches!(verdict, Verdict::RuntimeError | Verdict::BadTrace | Verdict::NoOutput);
         if count(Verdict::is_accepted) > 0 || 2 * count(unread) < results.len() {
@@ -127,7 +128,7 @@ impl SubmissionGrading<'_> {
         let program = &staged.as_ref().as_ref().ok()?.program;
         // A fault here is no reason to lose the grade.
         let found = milestone::looks_like(&self.runner(first, None), program).ok().flatten();
-        found.filter(|found| milestone::lacks(*found, self.grader.plan.assignment()))
+        found.filter(|found| milestone::lacks(*found, expected))
     }
 }
 
