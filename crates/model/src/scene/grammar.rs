@@ -57,7 +57,8 @@ const HABITS: [(&str, &str); 8] = [
 
 /// Returns the candidate that `word` probably means: the same except for case and punctuation, a customary other name,
 /// the beginning of it, or few slips away (a third of its letters, at most two).
-pub(super) fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
+#[must_use]
+pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     const LONGEST: usize = 40;
     if word.len() > LONGEST {
         return None;

@@ -28,6 +28,7 @@ mod xml;
 
 pub use crate::assignments::Integrator;
 pub use checks::LARGEST_IMPLICIT;
+pub use grammar::closest;
 pub use known::{UnknownFeature, UnknownPart};
 pub use model::{
     Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
