@@ -10,7 +10,6 @@ mod collision;
 mod forces;
 mod integrators;
 mod matrix;
-mod nearby;
 mod observer;
 mod pair;
 mod pairs;

@@ -16,7 +16,6 @@ use crate::{
     scene::{CollisionDetection, Scene},
     sim::{
         bodies::Bodies,
-        nearby::is_beyond,
         pair::{Pair, PairKind},
     },
 };
@@ -25,6 +24,7 @@ use fosssim_num::{
     vector::{at, length, unit},
 };
 pub use pairs::PenaltyPairs;
+use pairs::is_beyond;
 pub use sweep::SweepOrder;
 pub use terms::PenaltyTerms;
 
