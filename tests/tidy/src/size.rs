@@ -19,13 +19,13 @@ const HUNDREDS: [(&str, usize); 22] = [
     // The main thread's share of a grading went to the jobs; `--timings` says where a grading's time goes.
     // `smallest` runs programs for `shrink`, which is new; nothing was removed for it.
     // A course's own words on mistakes and groups.
-    ("grading", 50),
+    ("grading", 49),
     ("intake", 5),
     ("judge", 45),
     ("lab", 15),
     // The worth of a mistake, and the smallest scenes that students see; nothing was removed for them here.
     ("mistakes", 62),
-    ("model", 89),
+    ("model", 85),
     ("num", 37),
     ("original", 9),
     ("render", 16),
