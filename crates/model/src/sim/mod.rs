@@ -23,6 +23,7 @@ mod step_error;
 
 pub use collision::{PairMotion, PointMotion, formulas};
 pub use forces::{PenaltyPairs, PenaltyTerms, SweepOrder, gradients};
+pub use integrators::least_work;
 pub use observer::{
     Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steer, Steering, Time, WantedPairs, Zone,
 };

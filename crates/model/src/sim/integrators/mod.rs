@@ -36,11 +36,26 @@ struct Effort {
 }
 
 impl Effort {
-    /// Counts an iteration with this number of unknowns: elimination takes n^3 / 3 operations, of which a detection
-    /// call does some hundred. Whether more is allowed.
+    /// Counts an iteration with this number of unknowns. Whether more is allowed.
     fn iterate(&mut self, unknowns: usize) -> bool {
-        self.done += 1 + (unknowns as u64).pow(3) / 64;
+        self.done += work_of_iteration(unknowns);
         self.done <= self.most
+    }
+}
+
+/// Returns the work of an iteration with this number of unknowns: elimination takes n^3 / 3 operations, of which a
+/// detection call does some hundred.
+const fn work_of_iteration(unknowns: usize) -> u64 {
+    1 + (unknowns as u64).pow(3) / 64
+}
+
+/// Returns the least work of a step of the scene's method, in the unit of
+/// [`SearchCounts::work`](super::search::SearchCounts::work): an iteration of Newton's method, if that is used.
+#[must_use]
+pub fn least_work(scene: &Scene) -> u64 {
+    match scene.integrator {
+        Integrator::ImplicitEuler => work_of_iteration(2 * scene.particles.len()),
+        _ => 0,
     }
 }
 
