@@ -5,6 +5,8 @@ use super::{Area, Mistake};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Student {
     mistakes: [Option<Mistake>; Student::MOST],
+    /// The areas of these mistakes, a bit each: most questions are about areas without one.
+    areas: u64,
     right_approach: bool,
 }
 
@@ -22,6 +24,7 @@ impl Student {
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
             *free = mistake;
+            self.areas |= mistake.map_or(0, |mistake| bit(mistake.area()));
         }
         self
     }
@@ -45,7 +48,8 @@ impl Student {
     /// Returns the mistake of these parts of the assignment, if many are distinguished in one place; the first part
     /// that has one counts.
     pub fn mistake_in(&self, areas: &[Area]) -> Option<Mistake> {
-        areas.iter().find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
+        let mut here = areas.iter().filter(|area| self.areas & bit(**area) != 0);
+        here.find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
     /// Returns the first of these mistakes that the student makes.
@@ -82,4 +86,9 @@ mod tests {
         assert_eq!(student.mistake_in(&[Area::Handover, Area::ParticleParticle]), Some(Mistake::ParticleParticleNoTwo));
         assert_eq!(student.mistake_in(&[Area::Failsafe]), None);
     }
+}
+
+/// Returns the bit of an area.
+const fn bit(area: Area) -> u64 {
+    1 << area as u32
 }

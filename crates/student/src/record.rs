@@ -11,6 +11,7 @@ use super::{
 };
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_num::vector::Vec2;
+use std::borrow::Cow;
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Trace];
@@ -39,8 +40,9 @@ impl Record {
             x: numbers(student, &state.x),
             v: numbers(student, &state.v),
             impulses: has_impulses.then(|| impulses(student, &log.impulses)),
-            polynomials: has_polynomials
-                .then(|| (0..log.polynomials.len()).map(|index| polynomial(student, log, index)).collect()),
+            polynomials: has_polynomials.then(|| {
+                (0..log.polynomials.len()).map(|index| logged_polynomial(student, log, index).into()).collect()
+            }),
         }
     }
 
@@ -131,22 +133,23 @@ fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
 }
 
 /// Returns the coefficients of the record's polynomial `index`, as this program logs them.
-fn polynomial(student: Student, log: &StepLog, index: usize) -> Vec<f64> {
+pub(super) fn logged_polynomial<'a>(student: Student, log: &'a StepLog, index: usize) -> Cow<'a, [f64]> {
     let partner = index ^ 1;
+    let Some(mistake) = student.mistake_in(HERE) else { return log.polynomials[index].coefficients().into() };
     let swapped = student.makes(Mistake::LogSwapped) && partner < log.polynomials.len();
     let mut list = log.polynomials[if swapped { partner } else { index }].coefficients().to_vec();
-    match student.mistake_in(HERE) {
-        Some(Mistake::LogLowestFirst) => list.reverse(),
-        Some(Mistake::LogNegated) => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
-        Some(Mistake::LogNan) => list.fill(f64::NAN),
-        Some(Mistake::LogTiny) => list.fill(1e-11),
-        Some(Mistake::LogPadded) => list.insert(0, 0.0),
-        Some(Mistake::LogTrailingZero) => list.push(0.0),
-        Some(Mistake::LogRounded) => {
+    match mistake {
+        Mistake::LogLowestFirst => list.reverse(),
+        Mistake::LogNegated => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
+        Mistake::LogNan => list.fill(f64::NAN),
+        Mistake::LogTiny => list.fill(1e-11),
+        Mistake::LogPadded => list.insert(0, 0.0),
+        Mistake::LogTrailingZero => list.push(0.0),
+        Mistake::LogRounded => {
             list.iter_mut()
                 .for_each(|coefficient| *coefficient = format!("{coefficient:.5e}").parse().unwrap_or(*coefficient));
         }
         _ => {}
     }
-    list
+    Cow::Owned(list)
 }

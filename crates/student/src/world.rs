@@ -31,7 +31,7 @@ pub struct StepLog<'a> {
     pub impulses: Vec<Contact>,
     /// The polynomials handed to the root finder, in order.
     pub polynomials: Vec<Polynomial>,
-    /// The guard that sees each polynomial, with its index in the log, before its roots are searched.
+    /// The guard that sees each polynomial as it is logged, with its index, before its roots are searched.
     pub guard: Option<Guard<'a>>,
     /// The steps of root searches that took longer than usual.
     pub long_searches: u64,

@@ -13,6 +13,7 @@ use crate::{
     assignments::t2m2::{Inputs, Subject},
     author::Student,
     objects::{Contact, Object, Pair},
+    record::logged_polynomial,
     rounding::single,
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -246,7 +247,7 @@ pub fn detect(
     let first = log.polynomials.len();
     log.polynomials.extend_from_slice(&polynomials);
     if let Some(guard) = log.guard
-        && !polynomials.iter().enumerate().all(|(number, polynomial)| guard(first + number, polynomial.coefficients()))
+        && !(first..log.polynomials.len()).all(|index| guard(index, &logged_polynomial(student, log, index)))
     {
         return Err(StepFailure::Refused);
     }

@@ -4,7 +4,7 @@ use crate::diagnose::sampling::{
     KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
 };
 use fosssim_model::scene::Scene;
-use fosssim_student::{Area, Row, StepLog, Student, World};
+use fosssim_student::{Row, StepLog, Student, World};
 use std::cell::Cell;
 
 /// Tries programs, and counts the polynomials that they compute; one takes about a third of a microsecond.
@@ -21,11 +21,7 @@ pub(super) struct Trials<'a> {
 }
 
 /// A program.
-pub(super) struct Program {
-    world: World,
-    /// A program that logs wrongly hands other polynomials to the root finder than it logs.
-    logs_wrongly: bool,
-}
+pub(super) struct Program(World);
 
 impl<'a> Trials<'a> {
     /// Creates the trials on a scene; `correct` is the program to which mistakes are added.
@@ -49,8 +45,7 @@ impl<'a> Trials<'a> {
     pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
         let student: Student =
             rows.iter().fold(self.correct.with(None), |student, row| student.with_mistake(Some(row.mistake)));
-        let logs_wrongly = rows.iter().any(|row| row.area == Area::Trace);
-        Program { world: self.world.for_student(student), logs_wrongly }
+        Program(self.world.for_student(student))
     }
 
     /// Returns the part of the logged step that the program reproduces: 1 is all of it, polynomials are the first half.
@@ -60,15 +55,14 @@ impl<'a> Trials<'a> {
         let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
         let guard = |index: usize, coefficients: &[f64]| {
             asked.set(asked.get() + 1);
-            let goes_on = index < logged.len()
-                && (program.logs_wrongly || same_polynomial(coefficients, logged.get(index), &ROUND_OFF));
+            let goes_on = index < logged.len() && same_polynomial(coefficients, logged.get(index), &ROUND_OFF);
             if !goes_on && failed.get().is_none() {
                 failed.set(Some(index));
             }
             goes_on
         };
         let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
-        let records = resimulate(&program.world, &kept.before, &mut log);
+        let records = resimulate(&program.0, &kept.before, &mut log);
         self.work.set(self.work.get() + asked.get() + log.long_searches);
         self.left.set(self.left.get().saturating_sub(asked.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
