@@ -1,5 +1,5 @@
 //! The author of a program: the mistakes that are made in it.
-use super::{Area, Mistake};
+use super::{Area, Mistake, StepMistake};
 
 /// The program's author: makes one mistake, none, or several of different parts of the assignment.
 #[derive(Debug, Clone, Copy, Default)]
@@ -7,6 +7,8 @@ pub struct Student {
     mistakes: [Option<Mistake>; Student::MOST],
     /// The areas of these mistakes, a bit each: most questions are about areas without one.
     areas: u64,
+    /// Whether one of them is a slip in a quantity ([`StepMistake::Edit`]).
+    pub(super) has_slips: bool,
     right_approach: bool,
 }
 
@@ -25,6 +27,7 @@ impl Student {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
             *free = mistake;
             self.areas |= mistake.map_or(0, |mistake| bit(mistake.area()));
+            self.has_slips |= matches!(mistake, Some(Mistake::Step(StepMistake::Edit(_))));
         }
         self
     }

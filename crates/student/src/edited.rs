@@ -41,7 +41,7 @@ impl Student {
     }
 
     fn edits(&self) -> impl Iterator<Item = Edit> {
-        self.mistakes().filter_map(|mistake| match mistake {
+        self.mistakes().take_while(|_| self.has_slips).filter_map(|mistake| match mistake {
             Mistake::Step(StepMistake::Edit(edit)) => Some(edit),
             _ => None,
         })
