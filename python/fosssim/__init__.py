@@ -57,6 +57,11 @@ __all__ = [
 
 __version__ = _version("fosssim")
 
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]
+
+
 PathLike = Union[str, "_os.PathLike[str]"]
 Rules = Literal["both", "fair", "parity"]
 
@@ -352,10 +357,20 @@ def _check(trace: Trace, rules: Rules, *, html: bool) -> tuple[Any, list[bytes]]
     return _Session().ask("check", scene.xml, file=trace.data, **values)
 
 
-def check(scene: SceneLike, trace: Trace | PathLike | bytes, *, rules: Rules = "both") -> Report:
-    """Judges a trace by the rule books ``fair``, ``parity`` or ``both``, and explains what is wrong."""
-    if not isinstance(trace, Trace):
-        trace = Trace(scene, trace)
+def _traced(scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None) -> Trace:
+    if isinstance(scene, Trace):
+        return scene
+    return trace if isinstance(trace, Trace) else Trace(scene, trace)
+
+
+def check(
+    scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None = None, *, rules: Rules = "both"
+) -> Report:
+    """Judges a trace by the rule books ``fair``, ``parity`` or ``both``, and explains what is wrong.
+
+    A :class:`Trace` knows its scene, and so does the name of a trace that comes with the module.
+    """
+    trace = _traced(scene, trace)
     first, (text,) = _check(trace, rules, html=False)
     data = _json.loads(text)
     fair = (data.get("fair") or {}).get("findings", [])
@@ -374,7 +389,7 @@ def check(scene: SceneLike, trace: Trace | PathLike | bytes, *, rules: Rules = "
     )
 
 
-def explain(scene: SceneLike, trace: Trace | PathLike | bytes) -> list[Mistake]:
+def explain(scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None = None) -> list[Mistake]:
     """The mistakes that explain what is wrong in a trace; none where it is right."""
     return check(scene, trace).mistakes
 
@@ -411,7 +426,7 @@ def grade(folder: PathLike, suite: PathLike | None = None, *, student: bool = Fa
     elif suite is not None:
         values["suite"] = _os.fspath(suite)
     if not folder.is_dir():
-        raise Error(f"{folder} is no folder of traces")
+        raise Error(f"{folder} is not a folder of traces: a trace is Group/name.bin in it")
     begun, _ = session.ask("suite", *parts, **values)
     columns = ("group", "scene", "verdict", "points", "max_points", "likely")
     table: dict[str, list[Any]] = {name: [] for name in columns}

@@ -48,6 +48,10 @@ def test_a_reference_is_accepted_and_its_arrays_lie_in_its_bytes():
 def test_a_wrong_trace_has_its_mistake_by_name():
     scene = fosssim.Scene(SCENE)
     report = fosssim.check(SCENE, FLAWED)
+    # A trace knows its scene, and so does a trace that comes with the module.
+    assert fosssim.check(FLAWED).data == fosssim.check(fosssim.Trace(FLAWED)).data == report.data
+    assert fosssim.explain(FLAWED) == report.mistakes
+    assert set(dir(fosssim)) == {*fosssim.__all__, "__version__"}
     assert not report.accepted and report.verdict == "wrong answer"
     assert report.steps == 24 and report.wrong_steps[0] == 2 and len(report.wrong_steps) == 23
     assert report.findings[0].count > 0 and "particle 2" in report.findings[0].text
