@@ -5,7 +5,7 @@ mod overlap;
 pub use overlap::Overlap;
 
 use super::{
-    number::exact,
+    number::{exact, fraction},
     style::{Look, Style},
     table::{Align, Cell, Table},
     view::{Number, document, numbers, view},
@@ -135,7 +135,7 @@ impl Detect<'_> {
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
         text += &format!("  all positive: {}\n", intervals(&study.answer.positive));
         let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
-        text += &format!("  {}\n", style.paint(look, &self.decision(exact)));
+        text += &format!("  {}\n", style.paint(look, &self.decision(time_text)));
         text += match study.certain {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
@@ -217,7 +217,7 @@ fn with_right(course: &Answer, right: &Answer) -> String {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
-        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", exact(time)),
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", time_text(time)),
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
@@ -264,7 +264,7 @@ fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
-    let mut zeros = real.iter().map(|&zero| exact(zero)).collect::<Vec<_>>().join(", ");
+    let mut zeros = real.iter().map(|&zero| time_text(zero)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
@@ -277,15 +277,20 @@ fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
     text
 }
 
-/// Returns `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `only at 0.5`.
+/// Returns a time as a short fraction if it is one: `1/3`.
+fn time_text(time: f64) -> String {
+    fraction(time).unwrap_or_else(|| exact(time))
+}
+
+/// Returns `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
 fn intervals(list: &[Interval]) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
     let words = |interval: &Interval| match interval {
-        Interval { lo, hi } if lo == hi => format!("only at {}", exact(*lo)),
+        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", time_text(*lo)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
-        Interval { lo, hi } => format!("({}, {})", exact(*lo), exact(*hi)),
+        Interval { lo, hi } => format!("({}, {})", time_text(*lo), time_text(*hi)),
     };
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
@@ -482,6 +487,9 @@ mod tests {
         let set = |lo, hi| Interval { lo, hi };
         assert_eq!(intervals(&[]), "nowhere");
         assert_eq!(intervals(&[Interval::EVERYTHING]), "always");
-        assert_eq!(intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)]), "(-inf, 0.25) and only at 0.5");
+        assert_eq!(
+            intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)]),
+            "(-inf, 0.25) and at 0.5 (intervals touch)"
+        );
     }
 }

@@ -4,6 +4,20 @@
 
 pub use fosssim_num::printed::{exact, general};
 
+/// Returns a short fraction where a number is one but for a few roundings, and its digits are many: `1/3`, or `0.15`
+/// where that has few decimals.
+#[must_use]
+pub fn fraction(value: f64) -> Option<String> {
+    let is_near = |denominator: &f64| {
+        let (scaled, whole) = (value * denominator, (value * denominator).round());
+        (1.0..1000.0).contains(&whole.abs()) && (scaled - whole).abs() <= 4.0 * f64::EPSILON * whole.abs()
+    };
+    let denominator = (2_u32..60).map(f64::from).find(is_near).filter(|_| value.to_string().len() > 9)?;
+    let whole = (value * denominator).round();
+    let has_few_decimals = 1e6 % denominator == 0.0;
+    Some(if has_few_decimals { exact(whole / denominator) } else { format!("{whole}/{denominator}") })
+}
+
 /// Returns a count with thin separation of thousands: `1 234 567`; four digits stay together.
 #[must_use]
 pub fn count(value: u64) -> String {
@@ -88,6 +102,13 @@ mod tests {
         assert_eq!(of(1.0, f64::NAN).0, "1 nan");
         assert_eq!(of(12.5, 1e-9), ("12.5 1e-09".to_owned(), Some(0)));
         assert_eq!(of(9.5, 10.5).1, Some(0));
+    }
+
+    #[test]
+    fn fractions_are_short_and_near() {
+        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(fraction);
+        let texts = texts.each_ref().map(Option::as_deref);
+        assert_eq!(texts, [Some("1/3"), Some("-7/11"), Some("0.3"), None, None]);
     }
 
     #[test]
