@@ -15,6 +15,8 @@ pub struct SmallestScene {
     pub bodies: usize,
     /// The number of steps.
     pub steps: u32,
+    /// The command that finds the scene again.
+    pub again: String,
     /// The number of runs of the program.
     pub runs: u32,
     /// Whether no single attempt makes it smaller; else the search was stopped.
@@ -38,8 +40,8 @@ pub struct SmallestScene {
 /// The reference's computation for one pair, or for the forces and the integrator.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct HandComputation {
-    /// The pair, as `detect --pair` takes it.
-    pub pair: Option<String>,
+    /// The arguments with which `detect` shows the pair, if it is about one.
+    pub detect: Option<String>,
     /// The computation: that of a pair is what `detect` prints.
     pub text: String,
 }
@@ -49,6 +51,13 @@ impl SmallestScene {
     #[must_use]
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
+    }
+
+    /// Returns whether none of these has the same scene, or shows the same cause.
+    #[must_use]
+    pub fn is_new(&self, found: &[Self]) -> bool {
+        let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::said);
+        found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
     }
 
     /// Cuts it down to what hints allow for students, except for its explanations.

@@ -14,14 +14,10 @@ use fosssim_model::{
     scene::{self, Scene},
 };
 use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
-use fosssim_shrink::{EndTest, Observation, Reducer, SceneSize, SmallScene, WrongReason, beginnings};
+use fosssim_shrink::{EndTest, Observation, Reducer, SmallScene, WrongReason, beginnings};
 use std::{
-    collections::BTreeMap,
+    cell::{Cell, OnceCell},
     path::Path,
-    sync::{
-        Mutex, OnceLock, PoisonError,
-        atomic::{AtomicU64, Ordering},
-    },
     time::Duration,
 };
 
@@ -33,7 +29,7 @@ pub const MOST_BODIES: usize = 400;
 const MOST_UNNAMED: usize = 2;
 
 /// The limits where the smallest scenes are only the end of a report.
-pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), jobs: 1 };
+pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
 
 /// The time on the processor and on the clock of a run.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
@@ -55,8 +51,6 @@ pub struct ShrinkLimits {
     pub runs: u32,
     /// The processor time of these runs, and of this process meanwhile.
     pub time: Duration,
-    /// Runs at one time.
-    pub jobs: usize,
 }
 
 /// A cause, and the scenes on which a program is wrong because of it.
@@ -151,24 +145,18 @@ pub struct Shrinker<'a> {
 }
 
 impl Shrinker<'_> {
-    /// Returns the smallest scene for a cause; `None` if neither a step nor some steps show it again. `progress` is
-    /// called with the size of each smaller scene.
+    /// Returns the smallest scene for a cause; `None` if neither a step nor some steps show it again.
     ///
     /// # Errors
     /// Faults of ours or of the machine, in words.
-    pub fn smallest(
-        &self,
-        cause: &WrongScenes<'_>,
-        progress: &mut dyn FnMut(&SceneSize),
-    ) -> Result<Option<ShrunkScene>, String> {
+    pub fn smallest(&self, cause: &WrongScenes<'_>) -> Result<Option<ShrunkScene>, String> {
         let mut tasks = cause.scenes.clone();
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
-        let spent = AtomicU64::new(0);
-        // If other threads grade, their time does not count.
-        let of = if self.limits.jobs == 1 { TimeOf::Thread } else { TimeOf::Process };
-        let begun = processor_time(of);
-        let time = || Duration::from_nanos(spent.load(Ordering::Relaxed)) + processor_time(of).saturating_sub(begun);
+        let spent = Cell::new(Duration::ZERO);
+        // Other threads may grade; their time does not count.
+        let begun = processor_time(TimeOf::Thread);
+        let time = || spent.get() + processor_time(TimeOf::Thread).saturating_sub(begun);
         for task in tasks.into_iter().take(MOST_SCENES) {
             if time() >= self.limits.time || self.runner.cancellation.is_cancelled() {
                 break;
@@ -181,7 +169,7 @@ impl Shrinker<'_> {
             let begin = beginnings(&task.scene, &seen.trace, &steps);
             let is_over = || time() >= self.limits.time || self.runner.cancellation.is_cancelled();
             // At best the scene alone distinguishes the mistake from all others.
-            let mut search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over, progress);
+            let search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over);
             let (mut found, mut held) = search(true)?;
             if found.is_none() {
                 (found, held) = search(false)?;
@@ -189,7 +177,7 @@ impl Shrinker<'_> {
             let Some(small) = found else { continue };
             let seen = match self.runner.cancellation.is_cancelled() {
                 // No program runs any more: the earlier result must suffice.
-                true => held.remove(&scene::write(&small.scene)),
+                true => held,
                 false => Some(self.observe(&small.scene, &spent)?),
             };
             let Some(seen) = seen else { continue };
@@ -201,16 +189,15 @@ impl Shrinker<'_> {
         Ok(None)
     }
 
-    /// Reduces one of these scenes, and returns it with the program's runs on all scenes on which it was wrong.
+    /// Reduces one of these scenes, and returns it with the program's run on it.
     fn reduce(
         &self,
         (reason, leads): (&WrongReason, bool),
-        begin: Vec<Scene>,
-        spent: &AtomicU64,
+        begin: Vec<(u32, Scene)>,
+        spent: &Cell<Duration>,
         is_over: &EndTest<'_>,
-        progress: &mut dyn FnMut(&SceneSize),
-    ) -> Result<(Option<SmallScene>, BTreeMap<String, Observation>), String> {
-        let (fault, held) = (OnceLock::new(), Mutex::new(BTreeMap::new()));
+    ) -> Result<(Option<SmallScene>, Option<Observation>), String> {
+        let (fault, held) = (OnceCell::new(), Cell::new(None));
         let holds = |scene: &Scene| {
             if is_over() {
                 return None;
@@ -221,22 +208,21 @@ impl Shrinker<'_> {
             }
             let holds = if leads { reason.leads(scene, &seen) } else { reason.holds(scene, &seen) };
             if holds {
-                held.lock().unwrap_or_else(PoisonError::into_inner).insert(scene::write(scene), seen);
+                held.set(Some(seen));
             }
             Some(holds)
         };
         let reducer = Reducer::new(reason, self.assignment, &holds).until(is_over);
-        let found = reducer.with_jobs(self.limits.jobs).with_runs(self.limits.runs).reduce(begin, progress);
-        let held = held.into_inner().unwrap_or_default();
-        fault.into_inner().map_or(Ok((found, held)), Err)
+        let found = reducer.with_runs(self.limits.runs).reduce(begin);
+        fault.into_inner().map_or(Ok((found, held.into_inner())), Err)
     }
 
     /// Runs the program on a scene.
-    fn observe(&self, scene: &Scene, spent: &AtomicU64) -> Result<Observation, String> {
+    fn observe(&self, scene: &Scene, spent: &Cell<Duration>) -> Result<Observation, String> {
         let xml = scene::write(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
         let (trace, outcome) = self.runner.collect(self.program, &task, LONGEST)?;
-        spent.fetch_add(u64::try_from(outcome.cpu.as_nanos()).unwrap_or(u64::MAX / 2), Ordering::Relaxed);
+        spent.set(spent.get() + outcome.cpu);
         Ok(Observation { trace, ended: outcome.ended })
     }
 }

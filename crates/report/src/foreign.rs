@@ -55,6 +55,16 @@ pub fn printed(text: &str) -> String {
     plain(&without_codes(text))
 }
 
+/// Returns a word as a shell takes it.
+#[must_use]
+pub fn quote(word: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
 /// Returns whether a character changes the direction of the text, which could show a report's words in another order,
 /// or has no width, which makes two names look alike.
 pub(crate) const fn is_unseen(c: char) -> bool {
@@ -108,5 +118,14 @@ mod tests {
         for c in (0..128_u8).map(char::from) {
             assert_eq!(plain(&format!("a{c}b")) + "\u{e9}", plain(&format!("a{c}b\u{e9}")), "{c:?}");
         }
+    }
+
+    #[test]
+    fn words_with_blanks_and_quotes_stay_one_word() {
+        assert_eq!(quote("scenes/test00.xml"), "scenes/test00.xml");
+        assert_eq!(quote("asset:Group/name"), "asset:Group/name");
+        assert_eq!(quote("my scene.xml"), "'my scene.xml'");
+        assert_eq!(quote("it's; rm"), "'it'\\''s; rm'");
+        assert_eq!(quote(""), "''");
     }
 }

@@ -2,7 +2,7 @@
 //! computation by hand.
 use crate::{
     explain::{ExplanationView, lines},
-    foreign::plain,
+    foreign::{plain, quote},
     number::counted,
     style::{Look, Style},
     view::{FindingView, view},
@@ -13,10 +13,14 @@ use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestSce
 /// Returns the size and the origin of the scene, in a sentence.
 pub(crate) fn title(small: &SmallestScene) -> String {
     let SmallestScene { bodies, origin, .. } = small;
-    let plural = if *bodies == 1 { "body" } else { "bodies" };
+    let bodies = match bodies {
+        0 => "no body".to_owned(),
+        1 => "1 body".to_owned(),
+        more => format!("{more} bodies"),
+    };
     let (steps, runs) = (counted(small.steps.into(), "step"), counted(small.runs.into(), "run"));
     let end = if small.is_minimal { "" } else { "; the search was stopped" };
-    format!("The smallest scene: {bodies} {plural}, {steps} (made from {origin} in {runs}{end})")
+    format!("The smallest scene: {bodies}, {steps} (made from {origin} in {runs}{end})")
 }
 
 /// Renders the report for people. `file` is the one with the scene, if it was written.
@@ -44,19 +48,12 @@ fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
 
 /// Returns commands that run the program on the scene and show more.
 fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
-    let (scene, program) = (file.unwrap_or("small.xml"), &small.program);
-    let mut all = vec![
-        format!("{program} -s {scene} -d 0 -o small.bin"),
-        format!("fosssim-oracle check {scene} small.bin --all"),
-    ];
-    all.extend(
-        small
-            .by_hand
-            .iter()
-            .filter_map(|by_hand| by_hand.pair.as_ref())
-            .map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin --step 1 --pair {pair}")),
-    );
-    all
+    let (scene, program) = (quote(file.unwrap_or("small.xml")), quote(&small.program));
+    let detect = small.by_hand.as_ref().and_then(|by_hand| by_hand.detect.as_ref());
+    let detect = detect.map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin --step 1 {pair}"));
+    let check = small.note.is_none().then(|| format!("fosssim-oracle check {scene} small.bin --all"));
+    let run = format!("{program} -s {scene} -d 0 -o small.bin");
+    std::iter::once(run).chain(check).chain(detect).chain([small.again.clone()]).collect()
 }
 
 view! {
@@ -67,6 +64,8 @@ view! {
         origin: String = plain(&small.origin),
         /// The scene, as a file.
         scene: String = small.xml.clone(),
+        /// The command that finds the scene again.
+        again: String = plain(&small.again),
         /// The number of runs of the program.
         runs: u32 = small.runs,
         /// Whether no single attempt makes it smaller; false if the search was stopped.

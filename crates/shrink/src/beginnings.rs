@@ -9,11 +9,11 @@ use fosssim_num::vector::at;
 /// Wrong steps that are tried: a later one may show alone the reason that the first one shows together with others.
 const MOST_STEPS: usize = 6;
 
-/// Returns scenes to begin with, in the order in which they are tried: each of these wrong steps alone, then the first
-/// one with the step before it, then the whole run up to it. `trace` is the program's trace of the scene; steps count
+/// Returns scenes to begin with, each with its wrong step, in the order in which they are tried: each of these wrong
+/// steps alone, then the first one with the step before it, then the whole run up to it. `trace` is the program's trace of the scene; steps count
 /// from 1 and ascend. Parts that only a display uses are removed.
 #[must_use]
-pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<Scene> {
+pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene)> {
     let Some(&first) = wrong.first() else { return Vec::new() };
     let wanted: Vec<u32> = wrong.iter().copied().take(MOST_STEPS).collect();
     let states = states(scene, trace, wanted.last().copied().unwrap_or(first));
@@ -21,10 +21,10 @@ pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<Scene> {
         let state = states.get(step as usize - 1).filter(|state| state.is_finite())?;
         Some(from_state(scene, state, steps))
     };
-    let alone = wanted.iter().filter_map(|step| from(*step, 1));
+    let alone = wanted.iter().filter_map(|step| Some((*step, from(*step, 1)?)));
     let with_before = (first > 1).then(|| from(first - 1, 2)).flatten();
     let whole = (first > 2).then(|| from(1, first)).flatten();
-    alone.chain(with_before).chain(whole).collect()
+    alone.chain([with_before, whole].into_iter().flatten().map(|scene| (first, scene))).collect()
 }
 
 /// Returns the state before each step up to this one, if the trace has them.

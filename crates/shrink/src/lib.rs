@@ -25,7 +25,7 @@
 //! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
 //! let holds = |scene: &_| Some(reason.holds(scene, &run(scene)));
 //! let begin = beginnings(&scene, &run(&scene).trace, &[1]);
-//! let found = Reducer::new(&reason, Assignment::T1M1, &holds).reduce(begin, &mut |_| {}).expect("a scene");
+//! let found = Reducer::new(&reason, Assignment::T1M1, &holds).reduce(begin).expect("a scene");
 //! assert_eq!((found.scene.steps(), found.scene.particles.len()), (1, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -35,7 +35,6 @@
 mod beginnings;
 mod clear;
 mod features;
-mod guesses;
 mod numbers;
 mod parts;
 mod reason;

@@ -42,7 +42,8 @@ pub(crate) fn numbers(scene: &mut Scene) -> Vec<(SceneNumber, &mut f64)> {
         }
         Collision::Penalty { stiffness, thickness, .. } => all.extend([(Constant, stiffness), (Extra, thickness)]),
         Collision::Hybrid { restitution, stiffness, thickness, .. } => {
-            all.extend([(Constant, restitution), (Constant, stiffness), (Extra, thickness)]);
+            // The penalty force of `hybrid` is an addition.
+            all.extend([(Constant, restitution), (Extra, stiffness), (Extra, thickness)]);
         }
     }
     for particle in &mut scene.particles {
@@ -87,23 +88,9 @@ fn round_to(value: f64, decimals: usize) -> f64 {
     rounded + 0.0
 }
 
-/// Returns the scene moved, turned, mirrored and scaled in many ways, each with all numbers rounded.
-pub(crate) fn transformed(scene: &Scene) -> Vec<Scene> {
-    let mut all = vec![scene.clone()];
-    for radius in scene.particles.iter().map(|particle| particle.radius).chain(scene.edges.iter().map(|e| e.radius)) {
-        all.extend((radius != 1.0 && radius > 0.0).then(|| scale(scene, 1.0 / radius, 1.0)));
-    }
-    let in_seconds: Vec<Scene> = all.iter().map(|one| scale(one, 1.0, 1.0 / one.time_step)).collect();
-    all.extend(in_seconds);
-    // Bodies that move little in a step leave no room for round numbers.
-    let is_velocity = |quantity| quantity == SceneNumber::Velocity;
-    let faster = |scene: &Scene, factor: f64| {
-        map_numbers(scene, |quantity, value| if is_velocity(quantity) { factor * value } else { value })
-    };
-    let hurried: Vec<Scene> = all.iter().flat_map(|one| [2.0, 10.0, 100.0].map(|by| faster(one, by))).collect();
-    all.extend(hurried);
-    let moved = all.iter().flat_map(|one| origins(one).into_iter().map(|origin| translate(one, origin)));
-    let all: Vec<Scene> = moved.collect();
+/// Returns the scene moved so that something is at the origin, each with all numbers rounded to 0, 1 or 2 decimals.
+pub(crate) fn moved(scene: &Scene) -> Vec<Scene> {
+    let all: Vec<Scene> = origins(scene).into_iter().map(|origin| translate(scene, origin)).collect();
     let round = |scene: &Scene, decimals| map_numbers(scene, |_, value| round_to(value, decimals));
     (0..=2).flat_map(|decimals| all.iter().map(move |one| round(one, decimals))).collect()
 }
@@ -148,43 +135,6 @@ pub(crate) fn turned(scene: &Scene) -> Vec<Scene> {
     [[y, left], [down, x], [left, down], [left, y], [x, down], [y, x], [down, left]].map(turn).into()
 }
 
-/// Returns the scene with other units of length and of time; masses stay.
-fn scale(scene: &Scene, length: f64, time: f64) -> Scene {
-    let mut scene = scene.clone();
-    let steps = scene.steps();
-    let pace = 1.0 / (time * time);
-    scene.time_step *= time;
-    match &mut scene.collision {
-        Collision::Penalty { stiffness, thickness, .. } | Collision::Hybrid { stiffness, thickness, .. } => {
-            (*stiffness, *thickness) = (*stiffness * pace, *thickness * length);
-        }
-        _ => {}
-    }
-    for particle in &mut scene.particles {
-        particle.position *= length;
-        particle.velocity *= length / time;
-        particle.radius *= length;
-    }
-    scene.edges.iter_mut().for_each(|edge| edge.radius *= length);
-    scene.half_planes.iter_mut().for_each(|plane| plane.point *= length);
-    for force in &mut scene.forces {
-        match force {
-            Force::Spring { stiffness, rest_length, damping, .. } => {
-                (*stiffness, *rest_length) = (*stiffness * pace, *rest_length * length);
-                *damping /= time;
-            }
-            Force::SimpleGravity { acceleration: vector } | Force::Constant { force: vector } => {
-                *vector *= length * pace;
-            }
-            Force::Gravitation { constant, .. } => *constant *= length * length * length * pace,
-            Force::Drag { coefficient } => *coefficient /= time,
-            Force::Vortex { strength, .. } => *strength *= length * length / time,
-        }
-    }
-    set_steps(&mut scene, steps);
-    scene
-}
-
 /// Returns the scene with rounder numbers for its `index`-th, the roundest first; none after the last one.
 pub(crate) fn rounder(scene: &Scene, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
@@ -199,20 +149,4 @@ pub(crate) fn rounder(scene: &Scene, index: usize) -> Option<Vec<Scene>> {
         scene
     };
     Some(plain.into_iter().chain(whole).chain(round).map(with).collect())
-}
-
-/// Returns the scene with numbers drawn from a few round ones, by this source of numbers.
-pub(crate) fn drawn(scene: &Scene, mut next: impl FnMut() -> u64) -> Scene {
-    let mut pick = |from: &[f64]| from[(next() >> 33) as usize % from.len()];
-    map_numbers(scene, |quantity, value| match quantity {
-        SceneNumber::Place => pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 4.0, -1.0, -2.0, -3.0]),
-        SceneNumber::Velocity => pick(&[0.0, 0.0, 1.0, 2.0, 3.0, 4.0, 6.0, -1.0, -2.0, -3.0, -4.0, -6.0]),
-        SceneNumber::Direction if value == 0.0 => pick(&[0.0, 0.0, 1.0]),
-        SceneNumber::Direction => pick(&[1.0, 2.0, -1.0, 0.0]),
-        SceneNumber::Body => pick(&[1.0, 1.0, 2.0, 0.5]),
-        SceneNumber::Constant => pick(&[1.0, 1.0, 2.0, 0.5, value]),
-        SceneNumber::Extra if value == 0.0 => 0.0,
-        SceneNumber::Extra => pick(&[0.5, 1.0, 2.0, 0.0]),
-        SceneNumber::TimeStep => pick(&[1.0, 1.0, 0.5]),
-    })
 }

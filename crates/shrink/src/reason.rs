@@ -1,4 +1,5 @@
 //! The reason why a program is wrong on a scene, and whether it is wrong for the same reason on another.
+use crate::clear::clear_decisions;
 use fosssim_ended::RunEnd;
 use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::FailureKind};
 use fosssim_judge::replay::{Options, judge};
@@ -72,7 +73,9 @@ impl WrongReason {
             (reason, None) => match (reason, findings(scene, &seen.trace)) {
                 (Self::BrokenTrace, fault) => fault == Some(TraceFault::Broken),
                 (_, None | Some(TraceFault::Broken)) => false,
-                (Self::Mistake(mistake), Some(_)) => is_named_in(mistake, &diagnose::explain(scene, &seen.trace)),
+                (Self::Mistake(mistake), Some(TraceFault::Wrong(first))) => {
+                    first.is_ordinary && is_named_in(mistake, &diagnose::explain(scene, &seen.trace))
+                }
                 (Self::Finding(kind, pair), Some(TraceFault::Wrong(first))) => {
                     first.is_plain && (first.kind, first.pair) == (*kind, *pair)
                 }
@@ -90,7 +93,7 @@ impl WrongReason {
         FailureKind::from_end(&seen.ended).is_none()
             // Most attempts end here, long before every mistake of the catalogue was tried.
             && (keys.is_empty() || reproduces(scene, &seen.trace, &keys))
-            && matches!(findings(scene, &seen.trace), Some(TraceFault::Wrong(_)))
+            && matches!(findings(scene, &seen.trace), Some(TraceFault::Wrong(first)) if first.is_ordinary)
             && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.said() == mistake.said())
     }
 
@@ -126,6 +129,8 @@ struct FirstFinding {
     pair: Option<PairKind>,
     /// Whether it is about more than round-off.
     is_plain: bool,
+    /// Whether it is about more than the size of a state, or of all bodies in one place.
+    is_ordinary: bool,
 }
 
 /// Returns the faults of a trace, unless round-off may decide them.
@@ -138,8 +143,11 @@ fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
     }
     let first = fair.findings.first_divergence.filter(|_| fair.verdict == FairVerdict::Rejected)?;
     let pair = first.detail.pair().map(|pair| pair.kind);
-    let first = FirstFinding { kind: first.kind(), pair, is_plain: is_plain(&first.detail) };
-    (fair.borderline == 0).then_some(TraceFault::Wrong(first))
+    let is_ordinary = !matches!(first.detail, FindingDetail::BeyondReach { .. });
+    let first = FirstFinding { kind: first.kind(), pair, is_plain: is_plain(&first.detail), is_ordinary };
+    // Behind a plain fault, decisions about the program's own positions may be borderline where the reference's are not.
+    let has_margin = || fair.borderline == 0 || (first.is_plain && clear_decisions(scene).is_some());
+    has_margin().then_some(TraceFault::Wrong(first))
 }
 
 /// Returns whether a finding is about more than round-off.

@@ -2,8 +2,7 @@
 use crate::{
     clear::clear_decisions,
     features::plainer,
-    guesses::guesses,
-    numbers::{rounder, transformed, turned},
+    numbers::{moved, rounder, turned},
     parts::PartKind,
     reason::WrongReason,
     size::SceneSize,
@@ -12,7 +11,7 @@ use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
-use std::{collections::BTreeSet, thread};
+use std::collections::BTreeSet;
 
 /// Passes after which the search ends even if the last one helped.
 const MOST_PASSES: u32 = 8;
@@ -22,6 +21,8 @@ const MOST_PASSES: u32 = 8;
 pub struct SmallScene {
     /// The scene.
     pub scene: Scene,
+    /// The wrong step of the scene with which the search began.
+    pub step: u32,
     /// The number of runs of the program.
     pub runs: u32,
     /// Whether no single attempt makes it smaller; else the search was stopped.
@@ -29,10 +30,10 @@ pub struct SmallScene {
 }
 
 /// Whether the program is wrong on a scene for the reason; nothing stops the search.
-pub type Holds<'a> = dyn Fn(&Scene) -> Option<bool> + Sync + 'a;
+pub type Holds<'a> = dyn Fn(&Scene) -> Option<bool> + 'a;
 
 /// Whether the search must end now.
-pub type EndTest<'a> = dyn Fn() -> bool + Sync + 'a;
+pub type EndTest<'a> = dyn Fn() -> bool + 'a;
 
 /// Makes scenes smaller on which a program stays wrong for the same reason.
 pub struct Reducer<'a> {
@@ -40,7 +41,6 @@ pub struct Reducer<'a> {
     assignment: Assignment,
     holds: &'a Holds<'a>,
     is_over: &'a EndTest<'a>,
-    jobs: usize,
     most_runs: u32,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Reducer<'a> {
     /// Creates a search that calls `holds` for each attempt, of a program of this assignment.
     #[must_use]
     pub fn new(reason: &'a WrongReason, assignment: Assignment, holds: &'a Holds<'a>) -> Self {
-        Self { reason, assignment, holds, is_over: &|| false, jobs: 1, most_runs: Self::MOST_RUNS }
+        Self { reason, assignment, holds, is_over: &|| false, most_runs: Self::MOST_RUNS }
     }
 
     /// Ends the search as soon as this is true, also between two runs.
@@ -60,32 +60,26 @@ impl<'a> Reducer<'a> {
         Self { is_over, ..self }
     }
 
-    /// Sets the number of attempts at a time. The result is the same.
-    #[must_use]
-    pub fn with_jobs(self, jobs: usize) -> Self {
-        Self { jobs: jobs.max(1), ..self }
-    }
-
     /// Runs the program at most this often.
     #[must_use]
     pub fn with_runs(self, most_runs: u32) -> Self {
         Self { most_runs, ..self }
     }
 
-    /// Begins with the first of these scenes on which the program is wrong for the reason, and makes it smaller; `None`
-    /// if there is no such scene. `progress` is called with the size of each smaller scene.
+    /// Begins with the first of these steps' scenes on which the program is wrong for the reason, and makes it smaller; `None`
+    /// if there is no such scene.
     #[must_use]
-    pub fn reduce(self, beginnings: Vec<Scene>, progress: &mut dyn FnMut(&SceneSize)) -> Option<SmallScene> {
+    pub fn reduce(self, beginnings: Vec<(u32, Scene)>) -> Option<SmallScene> {
         let mut runs = 0;
-        for scene in beginnings {
+        for (step, scene) in beginnings {
             if runs >= self.most_runs {
                 return None;
             }
             runs += 1;
             if (self.holds)(&scene)? {
-                let mut search = Search::new(&self, scene, runs, progress);
+                let mut search = Search::new(&self, scene, runs);
                 let is_minimal = search.run();
-                return Some(SmallScene { scene: search.best, runs: search.runs, is_minimal });
+                return Some(SmallScene { scene: search.best, step, runs: search.runs, is_minimal });
             }
         }
         None
@@ -93,9 +87,8 @@ impl<'a> Reducer<'a> {
 }
 
 /// A search under way.
-struct Search<'a, 'p> {
+struct Search<'a> {
     reducer: &'a Reducer<'a>,
-    progress: &'p mut dyn FnMut(&SceneSize),
     best: Scene,
     size: SceneSize,
     traits: SceneTraits,
@@ -115,15 +108,15 @@ struct SceneTraits {
     oddities: usize,
 }
 
-impl<'a, 'p> Search<'a, 'p> {
-    fn new(reducer: &'a Reducer<'a>, best: Scene, runs: u32, progress: &'p mut dyn FnMut(&SceneSize)) -> Self {
+impl<'a> Search<'a> {
+    fn new(reducer: &'a Reducer<'a>, best: Scene, runs: u32) -> Self {
         let traits = SceneTraits {
             is_clear: clear_decisions(&best).is_some(),
             shows: reducer.reason.shows(&best) == Some(true),
             oddities: oddities(&best, reducer.assignment).unwrap_or(usize::MAX),
         };
         let size = SceneSize::from_scene(&best);
-        Self { reducer, progress, best, size, traits, refuted: BTreeSet::new(), runs, is_stopped: false }
+        Self { reducer, best, size, traits, refuted: BTreeSet::new(), runs, is_stopped: false }
     }
 
     /// Searches until a whole pass helps nothing; returns whether that was so.
@@ -132,9 +125,7 @@ impl<'a, 'p> Search<'a, 'p> {
             let before = self.size;
             PartKind::ALL.into_iter().for_each(|kind| self.remove(kind));
             while self.take(plainer(&self.best, self.reducer.assignment)) {}
-            while self.take(transformed(&self.best)) {}
-            let drawn = guesses(&self.best, self.size, |scene| !(self.reducer.is_over)() && self.is_like(scene));
-            self.take(drawn);
+            while self.take(moved(&self.best)) {}
             self.round();
             while self.take(turned(&self.best)) {}
             if self.is_stopped || self.size == before {
@@ -180,41 +171,29 @@ impl<'a, 'p> Search<'a, 'p> {
 
     /// Takes the first of these scenes that is smaller and on which the program is wrong for the reason.
     fn take(&mut self, candidates: impl IntoIterator<Item = Scene>) -> bool {
-        let mut waiting = candidates.into_iter();
-        while !self.is_stopped {
-            let is_over = self.reducer.is_over;
-            let fitting = waiting.by_ref().take_while(|_| !is_over()).filter(|scene| self.fits(scene));
-            let batch: Vec<Scene> = fitting.take(self.reducer.jobs).collect();
-            if batch.is_empty() {
-                self.is_stopped = is_over();
-                return false;
+        for scene in candidates {
+            self.is_stopped |= (self.reducer.is_over)();
+            if self.is_stopped {
+                break;
             }
-            let answers = self.answers(&batch);
-            for (scene, answer) in batch.into_iter().zip(answers) {
-                if self.runs >= self.reducer.most_runs || answer.is_none() {
-                    self.is_stopped = true;
-                    return false;
-                }
-                self.runs += 1;
-                if answer == Some(true) {
+            if !self.fits(&scene) {
+                continue;
+            }
+            let may_run = self.runs < self.reducer.most_runs;
+            match may_run.then(|| (self.reducer.holds)(&scene)).flatten() {
+                Some(true) => {
+                    self.runs += 1;
                     self.accept(scene);
                     return true;
                 }
-                self.refuted.insert(scene::write(&scene));
+                Some(false) => {
+                    self.runs += 1;
+                    self.refuted.insert(scene::write(&scene));
+                }
+                None => self.is_stopped = true,
             }
         }
         false
-    }
-
-    fn answers(&self, batch: &[Scene]) -> Vec<Option<bool>> {
-        let holds = self.reducer.holds;
-        match batch {
-            [one] => vec![holds(one)],
-            all => thread::scope(|scope| {
-                let jobs: Vec<_> = all.iter().map(|one| scope.spawn(move || holds(one))).collect();
-                jobs.into_iter().map(|job| job.join().unwrap_or(Some(false))).collect()
-            }),
-        }
     }
 
     fn accept(&mut self, scene: Scene) {
@@ -223,7 +202,6 @@ impl<'a, 'p> Search<'a, 'p> {
         self.traits.shows |= self.reducer.reason.shows(&scene) == Some(true);
         self.traits.oddities = oddities(&scene, self.reducer.assignment).unwrap_or(self.traits.oddities);
         self.best = scene;
-        (self.progress)(&self.size);
     }
 
     /// Returns whether it is worth a run.

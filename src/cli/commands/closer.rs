@@ -2,6 +2,7 @@
 use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,
+    report::foreign::quote,
     suite::{Grade, SceneGrade, Submission, config::Hints, library, plan::Plan},
 };
 use std::path::{Path, PathBuf};
@@ -74,15 +75,5 @@ impl Closer<'_> {
         ];
         let options: String = options.into_iter().flatten().collect();
         format!("fosssim-oracle grade {}{options}", quote(&path.to_string_lossy()))
-    }
-}
-
-/// Returns a word as a shell takes it.
-fn quote(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./:=+,@".contains(c);
-    if !word.is_empty() && word.chars().all(is_plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }

@@ -17,6 +17,7 @@ use crate::{
         page::{Card, ExplainedPage},
         style::Style,
     },
+    suite::smallest::QUICK,
 };
 use anyhow::{Result, bail};
 use std::{
@@ -61,7 +62,7 @@ fn explain_program(
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
     let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
     if let Some(explained) = &mut explained {
-        shrink::add_smallest(&program, explained, shrink::AT_THE_END, None, drawing(arguments))?;
+        shrink::add_smallest(&program, explained, QUICK, &|_| true, None, drawing(arguments))?;
     }
     let is_traceless = |(_, steps): &(_, u32)| *steps == 0;
     if suite.is_some() && explained.as_ref().is_some_and(|all| all.ends.iter().all(is_traceless)) {

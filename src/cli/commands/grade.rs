@@ -235,7 +235,8 @@ impl GradingSession<'_> {
         let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
         let program = format!("./{}", self.arguments.program);
         let smallest = |small: &ShrunkScene, students: Hints| {
-            shrink::describe_for_grade(small, &program, [self.plan.staff_hints, students], self.pages.as_ref())
+            let hints = [self.plan.staff_hints, students];
+            shrink::describe_for_grade(small, &program, &self.arguments.suite, hints, self.pages.as_ref())
         };
         let log_error = OnceLock::new();
         let finish = |grade: &Grade| {

@@ -53,6 +53,8 @@ pub(super) struct Drawing {
 pub(super) struct ProgramUnderTest {
     pub(super) program: PathBuf,
     pub(super) assignment: Assignment,
+    /// The suite, as a command names it.
+    pub(super) suite: String,
     pub(super) cancellation: Arc<Cancellation>,
     plan: Plan,
     backend: Backend,
@@ -77,6 +79,7 @@ impl ProgramUnderTest {
         let mut ready = Self {
             program: make_absolute(program),
             assignment: Assignment::DEFAULT,
+            suite: suite.unwrap_or_default().to_owned(),
             cancellation: cancelled_by_signals(),
             plan: plan::find(suite.unwrap_or(Assignment::DEFAULT.key()))?,
             backend: backend(unsafe_no_sandbox)?,
@@ -87,7 +90,8 @@ impl ProgramUnderTest {
             ready.assignment = ready.plan.assignment();
         } else {
             ready.assignment = own_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
-            ready.plan = plan::find(ready.assignment.key())?;
+            ready.suite = ready.assignment.key().to_owned();
+            ready.plan = plan::find(&ready.suite)?;
         }
         Ok(ready)
     }
@@ -253,7 +257,7 @@ fn make_absolute(program: &Path) -> PathBuf {
 }
 
 /// Returns the remark on how a program ended, unless it ended well.
-fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
+pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,
         (ended, false) => Some(format!("the program {ended}")),

@@ -1,7 +1,7 @@
 //! `shrink`: the smallest scene on which a program is still wrong for the same reason.
 use super::{
     pages::Pages,
-    probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks},
+    probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks, note},
 };
 use crate::{
     cli::{
@@ -10,48 +10,46 @@ use crate::{
         output::Output,
     },
     diagnose::{About, Explanation, is_named_in},
-    evidence::{InspectedPair, inspect},
-    judge::{Rules, overlap::OverlapStudy, replay},
+    judge::{Rules, replay},
     report::{
         by_hand::first_step,
         case::Case,
         check::{Check, StepChoice, WrongSteps},
         describe::pair_key,
-        detect::{Detect, Overlap, Place},
         diagnosis::Diagnosis,
+        foreign::quote,
         page::{Card, ExplainedPage},
         smallest,
         style::Style,
     },
-    scene::{self, Scene},
+    scene,
     shrink::{SmallScene, WrongReason},
-    sim::{Pair, State, pairs},
+    sim::{Pair, Pass},
     suite::{
         config::Hints,
         located::FailureKind,
         smallest::{
-            HandComputation, MOST_BODIES, QUICK, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene,
-            causes, impatient,
+            HandComputation, MOST_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes,
+            impatient,
         },
     },
     together::told::cut,
-    trace::{Frame, Layout, Reader},
 };
 use anyhow::{Result, bail};
 use std::{path::Path, time::Duration};
 
-/// Runs at one time.
-const JOBS: usize = 2;
-
-/// The limits where the smallest scenes are only the end of a report.
-pub(super) const AT_THE_END: ShrinkLimits = ShrinkLimits { jobs: JOBS, ..QUICK };
-
 pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
-    let mut tasks = match (&arguments.scene, &arguments.suite) {
-        (Some(scene), _) => named_tasks(std::slice::from_ref(scene))?,
-        (None, Some(_)) => program.suite_tasks(),
-        (None, None) => program.tasks(&[])?,
+    let mut known = [program.tasks(&[])?, program.suite_tasks()];
+    if arguments.suite.is_some() {
+        known.reverse();
+    }
+    // A named scene is examined with those around it, for the likely mistakes; a file alone.
+    let is_chosen = |name: &str| arguments.scene.as_deref().is_none_or(|scene| Path::new(name) == scene);
+    let named = known.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
+    let mut tasks = match (named, &arguments.scene) {
+        (None, Some(scene)) => named_tasks(std::slice::from_ref(scene))?,
+        (named, _) => named.unwrap_or_default(),
     };
     tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
     if tasks.is_empty() {
@@ -59,14 +57,14 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     }
     let drawing = Drawing { hints: Hints::Full, has_pictures: false };
     let Some(mut examined) = program.examine(tasks, drawing)? else { return Ok(exit::INTERRUPTED) };
-    if examined.diagnosis.accepted() {
+    if examined.diagnosis.cases.iter().all(|case| case.accepted || !is_chosen(&case.scene)) {
         console::report("Nothing is wrong by the fair rules on these scenes.\n")?;
         return Ok(exit::ACCEPTED);
     }
     let (runs, time) = (arguments.runs, Duration::from_secs(arguments.seconds.into()));
     let drawing = Drawing { has_pictures: arguments.format == ExplainFormat::Html, ..drawing };
-    let limits = ShrinkLimits { runs, time, jobs: JOBS };
-    add_smallest(&program, &mut examined, limits, arguments.step, drawing)?;
+    let limits = ShrinkLimits { runs, time };
+    add_smallest(&program, &mut examined, limits, &is_chosen, arguments.step, drawing)?;
     let Diagnosis { smallest, .. } = &examined.diagnosis;
     let mut texts = Vec::new();
     for (number, small) in smallest.iter().enumerate() {
@@ -100,16 +98,22 @@ fn number_file(name: &Path, number: usize) -> std::path::PathBuf {
     name.with_file_name(format!("{}-{}{extension}", stem.to_string_lossy(), number + 1))
 }
 
-/// Adds the smallest scene for each cause, and its card, to a program's report.
+/// Adds the smallest scene for each cause, made from chosen scenes, and its card, to a program's report.
 pub(super) fn add_smallest(
     program: &ProgramUnderTest,
     examined: &mut ExaminedProgram,
     limits: ShrinkLimits,
+    is_chosen: &dyn Fn(&str) -> bool,
     step: Option<u32>,
     drawing: Drawing,
 ) -> Result<()> {
     let ExaminedProgram { diagnosis, cards, tasks, ends } = examined;
-    let runs = diagnosis.cases.iter().zip(&*tasks).zip(&*ends).filter(|((case, _), _)| !case.accepted);
+    let runs = diagnosis
+        .cases
+        .iter()
+        .zip(&*tasks)
+        .zip(&*ends)
+        .filter(|((case, _), _)| !case.accepted && is_chosen(&case.scene));
     let wrong: Vec<WrongScene<'_>> =
         runs.map(|((case, task), (ended, _))| WrongScene { task, explanations: &case.explanations, ended }).collect();
     let run_limits = impatient(&program.limits());
@@ -126,9 +130,9 @@ pub(super) fn add_smallest(
     for mut cause in causes {
         bar.next_run("making scenes smaller");
         cause.step = step;
-        let small = shrinker.smallest(&cause, &mut |_| {}).map_err(anyhow::Error::msg)?;
-        let told = small.map(|small| describe(&small, &name, drawing));
-        if let Some((small, card)) = told.filter(|(told, _)| found.iter().all(|one| one.xml != told.xml)) {
+        let small = shrinker.smallest(&cause).map_err(anyhow::Error::msg)?;
+        let told = small.map(|small| describe(&small, &name, &program.suite, drawing));
+        if let Some((small, card)) = told.filter(|(told, _)| told.is_new(&found)) {
             found.push(small);
             cards.push(card);
         }
@@ -142,33 +146,41 @@ pub(super) fn add_smallest(
 pub(super) fn describe_for_grade(
     small: &ShrunkScene,
     program: &str,
+    suite: &str,
     hints: [Hints; 2],
     pages: Option<&Pages>,
 ) -> SmallestScene {
     let has_pictures = pages.is_some();
     let [(mut for_staff, card), (_, own)] =
-        hints.map(|hints| describe(small, program, Drawing { hints, has_pictures }));
+        hints.map(|hints| describe(small, program, suite, Drawing { hints, has_pictures }));
     let keep = |card| pages.and_then(|pages| pages.keep(card));
     (for_staff.card, for_staff.card_for_students) = (keep(card), keep(own));
     for_staff
 }
 
 /// Returns the report on a smallest scene, and its card.
-fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
-    let ShrunkScene { reason, origin, small: SmallScene { scene, runs, is_minimal }, seen, .. } = small;
-    let note = FailureKind::from_end(&seen.ended).map(|_| format!("the program {}", seen.ended));
+fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
+    let ShrunkScene { reason, origin, small: SmallScene { scene, step, runs, is_minimal }, seen, .. } = small;
+    let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
+    let note =
+        note.map(|note| if scene.particles.is_empty() { format!("{note}; it needs no body for that") } else { note });
     let names = ("small.xml".to_owned(), program.to_owned());
     let (mut case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
+    // A card would show two equal motions if the program does not end well and its steps are right.
+    let card = card.filter(|_| case.note.is_none() || case.first.is_some());
     if let WrongReason::Mistake(cause) = reason {
         lead_with(cause, drawing.hints, &mut case);
     }
     let Case { trace: program, note, first, explanations, .. } = case;
+    let names = [program.as_str(), origin, suite].map(quote);
+    let again = format!("fosssim-oracle shrink {} {} --step {step} --suite {}", names[0], names[1], names[2]);
     let mut told = SmallestScene {
         origin: origin.clone(),
         program,
         xml: scene::write(scene),
         bodies: scene.particles.len(),
         steps: scene.steps(),
+        again,
         runs: *runs,
         is_minimal: *is_minimal,
         note,
@@ -180,17 +192,15 @@ fn describe(small: &ShrunkScene, program: &str, drawing: Drawing) -> (SmallestSc
         card_for_students: None,
     };
     if drawing.hints == Hints::Full {
-        let (differs, pair) = differences(small);
+        let (differs, place) = differences(small);
         told.differs = differs;
-        let of_pair = |pair| Some(HandComputation { pair: Some(pair_key(pair)), text: by_hand(small, pair)? });
-        let forces = || Some(HandComputation { pair: None, text: first_step(scene, "small.xml")? });
-        let first_pair = || of_pair(pairs(scene).iter().next()?);
-        told.by_hand = match pair {
-            Some(pair) => of_pair(pair),
-            None if scene.steps() > 1 => None,
-            // Where a pair is detected, students write more than forces.
-            None => first_pair().or_else(forces),
-        };
+        if scene.steps() == 1 && told.note.is_none() {
+            let detect = place.map(|(pair, pass)| {
+                let pass = pass.map_or_else(String::new, |pass| format!(" --pass {}", pass.index + 1));
+                format!("--pair {}{pass}", pair_key(pair))
+            });
+            told.by_hand = first_step(scene, place).map(|text| HandComputation { detect, text });
+        }
     }
     (told, card)
 }
@@ -204,14 +214,16 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
         Some(own) if matches!(cause.about, About::Pairs(_)) => own,
         own => {
             let example = own.and_then(|own| own.example);
-            Explanation { example, reproduced: 0, samples: 0, same_as: Vec::new(), ..cause.clone() }
+            // It lists the stages that are not written yet.
+            let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
+            Explanation { example, reproduced: 0, samples: 0, same_as, ..cause.clone() }
         }
     };
     case.explanations.splice(0..0, cut(hints, vec![lead]));
 }
 
-/// Returns the values that differ, and the pair of the first finding.
-fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
+/// Returns the values that differ, and the pair of the first finding with its pass.
+fn differences(small: &ShrunkScene) -> (Option<String>, Option<(Pair, Option<Pass>)>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
@@ -231,38 +243,6 @@ fn differences(small: &ShrunkScene) -> (Option<String>, Option<Pair>) {
         looks_like: None,
     };
     let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
-    let first = findings.and_then(|findings| findings.first_divergence).and_then(|first| first.detail.pair());
-    (check.steps_text(Style::Plain), first)
-}
-
-/// Returns the reference's computation for a pair in a scene of one step, next to the trace's numbers.
-fn by_hand(small: &ShrunkScene, pair: Pair) -> Option<String> {
-    let scene: &Scene = &small.small.scene;
-    let layout = Layout::for_scene(scene);
-    let (before, frames) = (State::for_scene(scene), frames(&small.seen.trace, layout));
-    let [.., mid, end] = &frames[..] else { return None };
-    if scene.steps() != 1 {
-        return None;
-    }
-    let (name, trace) = ("small.xml", Some("small.bin"));
-    if !layout.polynomials {
-        let study = &OverlapStudy::for_pair(scene, 1, &before, pair).ok()??;
-        let logged = Some(end.impulses.iter().any(|logged| logged.pair() == Some(pair)));
-        return Some(Overlap { study, scene: name, trace, step: 1, pair, logged }.text(Style::Plain));
-    }
-    let InspectedPair { step, .. } = inspect(scene, 1, &before, Some((&mid.state, &end.polynomials)), pair);
-    let (call, passes) = (step.calls.first()?, step.calls.len());
-    let place = Place { scene: name, trace, step: 1, pair, pass: Some(call.pass), passes, logged: &call.logged };
-    Some(Detect { study: call.study.as_ref().ok()?, place: Some(place) }.text(Style::Plain))
-}
-
-/// Returns the readable records of a trace.
-fn frames(trace: &[u8], layout: Layout) -> Vec<Frame> {
-    let mut reader = Reader::from_slice(trace, layout);
-    let mut frames = Vec::new();
-    let mut frame = Frame::default();
-    while frames.len() < 4 && matches!(reader.next(&mut frame), Ok(true)) {
-        frames.push(std::mem::take(&mut frame));
-    }
-    frames
+    let first = findings.and_then(|findings| findings.first_divergence).map(|first| first.detail);
+    (check.steps_text(Style::Plain), first.and_then(|detail| Some((detail.pair()?, detail.pass()))))
 }

@@ -108,9 +108,9 @@ impl SubmissionGrading<'_> {
             if cause.scenes.iter().any(|task| is_visible(&task.name)) {
                 cause.scenes.retain(|task| is_visible(&task.name));
             }
-            let small = shrinker.smallest(&cause, &mut |_| {}).ok().flatten();
+            let small = shrinker.smallest(&cause).ok().flatten();
             let told = small.map(|small| tell(&small, plan.student_hints(&small.origin)));
-            found.extend(told.filter(|told| found.iter().all(|one| one.xml != told.xml)));
+            found.extend(told.filter(|told| told.is_new(&found)));
         }
         found
     }

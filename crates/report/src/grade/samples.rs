@@ -204,6 +204,7 @@ pub(crate) fn smallest(explanations: Vec<Explanation>) -> SmallestScene {
         xml: "<scene>\n</scene>\n".to_owned(),
         bodies: 1,
         steps: 1,
+        again: "fosssim-oracle shrink ./FOSSSim Holistic/first --step 1 --suite t2m2".to_owned(),
         runs: 7,
         is_minimal: true,
         note: None,

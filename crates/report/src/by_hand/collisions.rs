@@ -1,0 +1,199 @@
+//! The passes of a step by hand, with the impulses and the rigid motions that answer them (collisions.md 3 to 6).
+use super::{short, table, vector};
+use crate::{
+    detect::{Detect, Overlap},
+    style::Style,
+};
+use fosssim_findings::{PairWords, PassWords};
+use fosssim_judge::{overlap::OverlapStudy, study::Study};
+use fosssim_model::{
+    scene::{Collision, Scene},
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, PairMotion, Pass, Stage, State, Zone},
+};
+use fosssim_num::vector::{Vec2, at, unit};
+
+/// Writes down a step while it is computed.
+pub(super) struct CollisionWalk<'a> {
+    scene: &'a Scene,
+    /// The pair whose detection is written in full, once.
+    pair: Option<(Pair, Option<Pass>)>,
+    text: String,
+    /// The positions at the begin of the step.
+    start: Vec<f64>,
+    /// The positions at its end, as the last pass or collision saw them, and velocities for `simple`.
+    seen: State,
+    /// Whether there is a response, a loop, or the pair's detection.
+    is_telling: bool,
+}
+
+impl<'a> CollisionWalk<'a> {
+    /// Begins with a scene's first step.
+    pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>) -> Self {
+        let start = State::for_scene(scene).positions;
+        Self { scene, pair, text: String::new(), start, seen: State::default(), is_telling: false }
+    }
+
+    /// Returns what was written, if it tells anything.
+    pub(super) fn finish(self) -> Option<String> {
+        self.is_telling.then_some(self.text)
+    }
+
+    fn shift(&self, particle: usize) -> Vec2 {
+        at(&self.seen.positions, particle) - at(&self.start, particle)
+    }
+
+    /// Renders the detection of a pair.
+    fn detection_text(&self, detection: &Detection<'_>) -> Option<String> {
+        let &Detection { pass, pair, q_start, q_end, .. } = detection;
+        if pass.stage == Stage::Simple {
+            let study = &OverlapStudy::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
+            let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
+            return Some(report.text(Style::Plain));
+        }
+        let study = &Study::for_motion(&PairMotion::between(self.scene, pair, q_start, q_end)).ok()?;
+        Some(format!("{}:\n{}", PairWords(pair), Detect { study, place: None }.text(Style::Plain)))
+    }
+}
+
+impl Observer for CollisionWalk<'_> {
+    fn begin_pass(&mut self, pass: Pass) {
+        self.text += &format!("Pass {}: {}\n", pass.index + 1, PassWords(pass));
+        self.is_telling |= matches!(pass.stage, Stage::Impulses { .. } | Stage::Geometric { .. });
+    }
+
+    fn pass_positions(&mut self, _: &[f64], q_end: &[f64]) {
+        self.seen.positions = q_end.to_vec();
+    }
+
+    fn detection(&mut self, detection: &Detection<'_>) {
+        let Detection { pass, pair, decision, .. } = *detection;
+        if self.pair.is_some_and(|(asked, when)| asked == pair && when.is_none_or(|when| when == pass)) {
+            self.text.extend(self.detection_text(detection));
+            (self.pair, self.is_telling) = (None, true);
+        }
+        if let Decision::Hit { time, normal } = decision {
+            self.seen = State { positions: detection.q_end.to_vec(), velocities: detection.velocities.to_vec() };
+            let when = if pass.stage == Stage::Simple { String::new() } else { format!(" at t = {}", short(time)) };
+            self.text += &format!("  {} collide{when} with n = {}\n", PairWords(pair), vector(normal));
+        }
+    }
+
+    fn end_pass(&mut self, pass: Pass, hits: usize) {
+        if hits == 0 {
+            let ends = if matches!(pass.stage, Stage::Impulses { .. }) { ", so the loop ends" } else { "" };
+            self.text += &format!("  nothing collides{ends}\n");
+        }
+    }
+
+    fn impulse(&mut self, impulse: &Impulse) {
+        self.is_telling = true;
+        let (scene, Impulse { pair, normal, time }) = (self.scene, *impulse);
+        let (first, second) = (pair.first as usize, pair.second as usize);
+        let is_simple = matches!(scene.collision, Collision::Simple { .. });
+        let (Collision::Simple { restitution }
+        | Collision::ContinuousTime { restitution }
+        | Collision::Hybrid { restitution, .. }) = scene.collision
+        else {
+            return;
+        };
+        let u = unit(normal);
+        let mut text = format!("Response to {}: u = n / |n| = {}\n", PairWords(pair), vector(u));
+        let weights = match pair.kind {
+            PairKind::ParticleParticle => vec![(first, 1.0), (second, -1.0)],
+            PairKind::ParticleHalfPlane => vec![(first, 1.0)],
+            PairKind::ParticleEdge => {
+                let edge = &scene.edges[second];
+                let place = |particle: usize| match is_simple {
+                    true => at(&self.seen.positions, particle),
+                    false => at(&self.start, particle) + time * self.shift(particle),
+                };
+                let [y1, y2, y3] = [first, edge.first, edge.second].map(place);
+                let alpha = ((y1 - y2).dot(&(y3 - y2)) / (y3 - y2).dot(&(y3 - y2))).clamp(0.0, 1.0);
+                text += &format!("  alpha = {}: the nearest point of the edge at that time\n", short(alpha));
+                vec![(first, 1.0), (edge.first, alpha - 1.0), (edge.second, -alpha)]
+            }
+        };
+        let speed = |particle: usize| match is_simple {
+            true => at(&self.seen.velocities, particle),
+            false => (1.0 / scene.time_step) * self.shift(particle),
+        };
+        let rate = |particle: usize| match &scene.particles[particle] {
+            // A half-plane moves fixed particles, too.
+            body if body.fixed && pair.kind != PairKind::ParticleHalfPlane => 0.0,
+            body => 1.0 / body.mass,
+        };
+        let rates: f64 = weights.iter().map(|&(particle, w)| w * w * rate(particle)).sum();
+        let closing: f64 = weights.iter().map(|&(particle, w)| w * speed(particle).dot(&u)).sum();
+        let factor = 1.0 + restitution;
+        let size = if rates == 0.0 { 0.0 } else { -factor * closing / rates };
+        let letter = if is_simple { "v" } else { "D" };
+        let [factor, closing, rates, result] = [factor, closing, rates, size].map(short);
+        text += &format!(
+            "  J = -(1 + COR) (sum of w {letter}.u) / (sum of w^2/m) = -{factor} * {closing} / {rates} = {result}\n"
+        );
+        let rows = weights.iter().map(|&(particle, w)| {
+            let change = w * size * rate(particle) * u;
+            [particle.to_string(), vector(speed(particle)), short(w), short(rate(particle)), vector(change)]
+        });
+        let change = if is_simple { "v += w J/m u" } else { "v += w J/m u, x += h times that" };
+        let speed = if is_simple { "v" } else { "D = dx / h" };
+        text += &table(["particle", speed, "w", "1/m", change], rows);
+        self.text += &text;
+    }
+
+    fn zones(&mut self, _: u32, zones: &[Zone<'_>]) {
+        let names: Vec<String> = zones.iter().map(zone_name).collect();
+        self.text +=
+            &format!("  impact zones: {}\n", if names.is_empty() { "none".to_owned() } else { names.join(", ") });
+    }
+
+    fn failsafe(&mut self, _: u32, zone: &Zone<'_>) {
+        self.text += &format!("Rigid failsafe of zone {}\n", zone_name(zone));
+        self.text += &rigid_motion(self.scene, zone, &self.start, |particle| self.shift(particle));
+    }
+
+    fn end_step(&mut self, _: u32, state: &State) {
+        let rows = (0..self.scene.particles.len()).map(|particle| {
+            let [v, x] = [&state.velocities, &state.positions].map(|values| vector(at(values, particle)));
+            [particle.to_string(), v, x]
+        });
+        self.text += &format!("End of the step\n{}", table(["particle", "v", "x"], rows));
+    }
+}
+
+/// Returns the parts of a zone: `{0, 1, half-plane}`.
+fn zone_name(zone: &Zone<'_>) -> String {
+    let particles = zone.particles.iter().map(u32::to_string);
+    let parts: Vec<String> = particles.chain(zone.half_plane.then(|| "half-plane".to_owned())).collect();
+    format!("{{{}}}", parts.join(", "))
+}
+
+/// Renders the motion of a zone as one rigid body, from the positions at the begin of the step and their changes.
+fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(usize) -> Vec2) -> String {
+    let members = || zone.particles.iter().map(|&particle| particle as usize);
+    if zone.half_plane || members().any(|particle| scene.particles[particle].fixed) {
+        return "  a half-plane or a fixed particle stops it: x is that of the step's start, v is 0\n".to_owned();
+    }
+    let mass = |particle: usize| scene.particles[particle].mass;
+    let rate = 1.0 / members().map(mass).sum::<f64>();
+    let center = rate * members().map(|particle| mass(particle) * at(start, particle)).sum::<Vec2>();
+    let motion = rate * members().map(|particle| mass(particle) * shift(particle)).sum::<Vec2>();
+    let (mut momentum, mut inertia, mut rows) = (0.0, 0.0, Vec::new());
+    for particle in members() {
+        let (m, s, rest) = (mass(particle), at(start, particle) - center, shift(particle) - motion);
+        let (angular, inertial) = (m * s.perp(&rest), m * s.dot(&s));
+        (momentum, inertia) = (momentum + angular, inertia + inertial);
+        rows.push([particle.to_string(), short(m), vector(s), vector(rest), short(angular), short(inertial)]);
+    }
+    let heading = ["particle", "m", "s = xs - x_cm", "dx - dx_cm", "m s x (dx - dx_cm)", "m |s|^2"];
+    format!(
+        "  x_cm = {}, dx_cm = {}\n{}  L = {}, I = {}, omega = L / I = {}\n  \
+         x = x_cm + dx_cm + cos(omega) s + sin(omega) (-s_y, s_x), v = (x - xs) / h\n",
+        vector(center),
+        vector(motion),
+        table(heading, rows),
+        short(momentum),
+        short(inertia),
+        short(momentum / inertia)
+    )
+}
