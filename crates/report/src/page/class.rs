@@ -273,7 +273,7 @@ fn figures(grades: &[Grade]) -> Vec<(String, String)> {
         (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", points(figures.max_points))),
-        (median, "median, both of those that ran".to_owned()),
+        (median, "median; both count those that ran".to_owned()),
         (unsolved.to_string(), "scenes without a right answer".to_owned()),
     ];
     let since =
