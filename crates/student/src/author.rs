@@ -74,6 +74,11 @@ impl Student {
     }
 }
 
+/// Returns the bit of an area.
+const fn bit(area: Area) -> u64 {
+    1 << area as u32
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -89,9 +94,4 @@ mod tests {
         assert_eq!(student.mistake_in(&[Area::Handover, Area::ParticleParticle]), Some(Mistake::ParticleParticleNoTwo));
         assert_eq!(student.mistake_in(&[Area::Failsafe]), None);
     }
-}
-
-/// Returns the bit of an area.
-const fn bit(area: Area) -> u64 {
-    1 << area as u32
 }

@@ -22,6 +22,7 @@ mod hessians;
 mod hybrid;
 mod impulses;
 mod integrators;
+mod logged;
 mod near_pairs;
 mod objects;
 mod penalty;

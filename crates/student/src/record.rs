@@ -3,6 +3,7 @@
 use super::{
     Area, Mistake,
     author::Student,
+    logged::logged_polynomial,
     objects::{Contact, State},
     rounding::single,
     step::step,
@@ -11,7 +12,6 @@ use super::{
 };
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_num::vector::Vec2;
-use std::borrow::Cow;
 
 /// The parts of the assignment whose mistakes are made here.
 const HERE: &[Area] = &[Area::Trace];
@@ -130,26 +130,4 @@ fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
         listed.iter_mut().for_each(|impulse| impulse.n = Vec2::new(f64::NAN, f64::NAN));
     }
     listed
-}
-
-/// Returns the coefficients of the record's polynomial `index`, as this program logs them.
-pub(super) fn logged_polynomial<'a>(student: Student, log: &'a StepLog, index: usize) -> Cow<'a, [f64]> {
-    let partner = index ^ 1;
-    let Some(mistake) = student.mistake_in(HERE) else { return log.polynomials[index].coefficients().into() };
-    let swapped = student.makes(Mistake::LogSwapped) && partner < log.polynomials.len();
-    let mut list = log.polynomials[if swapped { partner } else { index }].coefficients().to_vec();
-    match mistake {
-        Mistake::LogLowestFirst => list.reverse(),
-        Mistake::LogNegated => list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient),
-        Mistake::LogNan => list.fill(f64::NAN),
-        Mistake::LogTiny => list.fill(1e-11),
-        Mistake::LogPadded => list.insert(0, 0.0),
-        Mistake::LogTrailingZero => list.push(0.0),
-        Mistake::LogRounded => {
-            list.iter_mut()
-                .for_each(|coefficient| *coefficient = format!("{coefficient:.5e}").parse().unwrap_or(*coefficient));
-        }
-        _ => {}
-    }
-    Cow::Owned(list)
 }
