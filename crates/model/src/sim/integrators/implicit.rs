@@ -35,7 +35,7 @@ pub(super) fn advance(
         if iteration == NEWTON_ITERATIONS {
             return Err(StepError::Newton { step });
         }
-        if !effort.iterate(entries) {
+        if !effort.iterate() {
             return Err(StepError::Work { step });
         }
         let ImplicitScratch { x, v, dx, dv, earlier, .. } = &mut *scratch;

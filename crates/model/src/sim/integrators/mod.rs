@@ -33,30 +33,23 @@ pub(super) struct Stepper {
 struct Effort {
     done: u64,
     most: u64,
+    each: u64,
 }
 
 impl Effort {
-    /// Counts an iteration with this number of unknowns. Whether more is allowed.
-    fn iterate(&mut self, unknowns: usize) -> bool {
-        self.done += work_of_iteration(unknowns);
+    /// Counts an iteration. Whether more is allowed.
+    fn iterate(&mut self) -> bool {
+        self.done += self.each;
         self.done <= self.most
     }
 }
 
-/// Returns the work of an iteration with this number of unknowns: elimination takes n^3 / 3 operations, of which a
-/// detection call does some hundred.
-const fn work_of_iteration(unknowns: usize) -> u64 {
-    1 + (unknowns as u64).pow(3) / 64
-}
-
 /// Returns the least work of a step of the scene's method, in the unit of
 /// [`SearchCounts::work`](super::search::SearchCounts::work): an iteration of Newton's method, if that is used.
+/// Elimination takes n^3 / 3 operations, of which a detection call does some hundred.
 #[must_use]
 pub fn least_work(scene: &Scene) -> u64 {
-    match scene.integrator {
-        Integrator::ImplicitEuler => work_of_iteration(2 * scene.particles.len()),
-        _ => 0,
-    }
+    if scene.integrator == Integrator::ImplicitEuler { 1 + (2 * scene.particles.len() as u64).pow(3) / 64 } else { 0 }
 }
 
 /// The additional memory of the implicit methods, of size (2N)^2.
@@ -93,7 +86,7 @@ impl Stepper {
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,
-            effort: Effort { done: 0, most: u64::MAX },
+            effort: Effort { done: 0, most: u64::MAX, each: least_work(scene) },
         }
     }
 
