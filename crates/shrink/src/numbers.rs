@@ -88,9 +88,23 @@ fn round_to(value: f64, decimals: usize) -> f64 {
     rounded + 0.0
 }
 
-/// Returns the scene moved so that something is at the origin, each with all numbers rounded to 0, 1 or 2 decimals.
-pub(crate) fn moved(scene: &Scene) -> Vec<Scene> {
-    let all: Vec<Scene> = origins(scene).into_iter().map(|origin| translate(scene, origin)).collect();
+/// Returns the scene moved, turned, mirrored and scaled in many ways, each with all numbers rounded.
+pub(crate) fn transformed(scene: &Scene) -> Vec<Scene> {
+    let mut all = vec![scene.clone()];
+    for radius in scene.particles.iter().map(|particle| particle.radius).chain(scene.edges.iter().map(|e| e.radius)) {
+        all.extend((radius != 1.0 && radius > 0.0).then(|| scale(scene, 1.0 / radius, 1.0)));
+    }
+    let in_seconds: Vec<Scene> = all.iter().map(|one| scale(one, 1.0, 1.0 / one.time_step)).collect();
+    all.extend(in_seconds);
+    // Bodies that move little in a step leave no room for round numbers.
+    let is_velocity = |quantity| quantity == SceneNumber::Velocity;
+    let faster = |scene: &Scene, factor: f64| {
+        map_numbers(scene, |quantity, value| if is_velocity(quantity) { factor * value } else { value })
+    };
+    let hurried: Vec<Scene> = all.iter().flat_map(|one| [2.0, 10.0, 100.0].map(|by| faster(one, by))).collect();
+    all.extend(hurried);
+    let moved = all.iter().flat_map(|one| origins(one).into_iter().map(|origin| translate(one, origin)));
+    let all: Vec<Scene> = moved.collect();
     let round = |scene: &Scene, decimals| map_numbers(scene, |_, value| round_to(value, decimals));
     (0..=2).flat_map(|decimals| all.iter().map(move |one| round(one, decimals))).collect()
 }
@@ -133,6 +147,43 @@ pub(crate) fn turned(scene: &Scene) -> Vec<Scene> {
     let (x, y) = ([1.0, 0.0], [0.0, 1.0]);
     let (left, down) = ([-1.0, 0.0], [0.0, -1.0]);
     [[y, left], [down, x], [left, down], [left, y], [x, down], [y, x], [down, left]].map(turn).into()
+}
+
+/// Returns the scene with other units of length and of time; masses stay.
+fn scale(scene: &Scene, length: f64, time: f64) -> Scene {
+    let mut scene = scene.clone();
+    let steps = scene.steps();
+    let pace = 1.0 / (time * time);
+    scene.time_step *= time;
+    match &mut scene.collision {
+        Collision::Penalty { stiffness, thickness, .. } | Collision::Hybrid { stiffness, thickness, .. } => {
+            (*stiffness, *thickness) = (*stiffness * pace, *thickness * length);
+        }
+        _ => {}
+    }
+    for particle in &mut scene.particles {
+        particle.position *= length;
+        particle.velocity *= length / time;
+        particle.radius *= length;
+    }
+    scene.edges.iter_mut().for_each(|edge| edge.radius *= length);
+    scene.half_planes.iter_mut().for_each(|plane| plane.point *= length);
+    for force in &mut scene.forces {
+        match force {
+            Force::Spring { stiffness, rest_length, damping, .. } => {
+                (*stiffness, *rest_length) = (*stiffness * pace, *rest_length * length);
+                *damping /= time;
+            }
+            Force::SimpleGravity { acceleration: vector } | Force::Constant { force: vector } => {
+                *vector *= length * pace;
+            }
+            Force::Gravitation { constant, .. } => *constant *= length * length * length * pace,
+            Force::Drag { coefficient } => *coefficient /= time,
+            Force::Vortex { strength, .. } => *strength *= length * length / time,
+        }
+    }
+    set_steps(&mut scene, steps);
+    scene
 }
 
 /// Returns the scene with rounder numbers for its `index`-th, the roundest first; none after the last one.

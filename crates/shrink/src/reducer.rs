@@ -2,7 +2,7 @@
 use crate::{
     clear::clear_decisions,
     features::plainer,
-    numbers::{moved, rounder, turned},
+    numbers::{rounder, transformed, turned},
     parts::PartKind,
     reason::WrongReason,
     size::SceneSize,
@@ -125,7 +125,7 @@ impl<'a> Search<'a> {
             let before = self.size;
             PartKind::ALL.into_iter().for_each(|kind| self.remove(kind));
             while self.take(plainer(&self.best, self.reducer.assignment)) {}
-            while self.take(moved(&self.best)) {}
+            while self.take(transformed(&self.best)) {}
             self.round();
             while self.take(turned(&self.best)) {}
             if self.is_stopped || self.size == before {
