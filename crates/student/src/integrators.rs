@@ -13,8 +13,6 @@ const NEWTON_LIMIT: u32 = 100_000;
 
 /// And after this many with a mistake: such a program is tried in passing, and converges soon or hardly at all.
 const NEWTON_LIMIT_OF_MISTAKES: u32 = 60;
-/// Small systems are cheap: a mistake may take as many iterations as this number has cubes of their unknowns.
-const NEWTON_WORK_OF_MISTAKES: u32 = 100_000;
 
 /// Advances the state by one step, without any regard for collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
@@ -140,8 +138,7 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
 fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
-    let cheap = u32::try_from(state.v.len()).map_or(0, |unknowns| NEWTON_WORK_OF_MISTAKES / unknowns.pow(3).max(1));
-    let most = if world.student.makes_none() { NEWTON_LIMIT } else { NEWTON_LIMIT_OF_MISTAKES.max(cheap) };
+    let most = if world.student.makes_none() { NEWTON_LIMIT } else { NEWTON_LIMIT_OF_MISTAKES };
     let (mut enough, mut iterations) = (1e-9, u32::MAX);
     for slip in world.student.slips(Term::Newton) {
         match slip {
