@@ -132,7 +132,7 @@ fn the_search_finds_what_overlaps_and_nothing_else() {
     };
     let count = 150;
     // Some are much larger than most.
-    let radii: Vec<f64> = (0..count).map(|_| 0.02 + 0.8 * random().powi(8)).collect();
+    let radii: Vec<f64> = (0..count).map(|_| 0.02 + 0.8 * std::iter::repeat_n(random(), 8).product::<f64>()).collect();
     let scene = scene(radii.iter().map(|&radius| particle((0.0, 0.0), (0.0, 0.0), 1.0, radius)).collect());
     let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     for step in 0..6 {
