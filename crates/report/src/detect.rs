@@ -295,26 +295,27 @@ fn intervals(list: &[Interval]) -> String {
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
 
-/// Returns `-0.25 t^2 + 0.5 t - 0.1875`; an empty list of coefficients is the zero polynomial.
+/// Returns `-0.25 t^2 + t - 0.1875`; an empty list of coefficients is the zero polynomial. Only a leading zero, which a
+/// log should not have, is written.
 pub(crate) fn polynomial(coefficients: &[f64]) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
     }
     let mut text = String::new();
-    for (place, &value) in coefficients.iter().enumerate() {
-        let negative = value.is_sign_negative();
-        text += match (place, negative) {
+    for (place, &value) in coefficients.iter().enumerate().filter(|(place, value)| *place == 0 || **value != 0.0) {
+        text += match (place, value.is_sign_negative()) {
             (0, false) => "",
             (0, true) => "-",
             (_, false) => " + ",
             (_, true) => " - ",
         };
-        text += &exact(value.abs());
-        match coefficients.len() - 1 - place {
-            0 => {}
-            1 => text += " t",
-            power => text += &format!(" t^{power}"),
-        }
+        let letter = match coefficients.len() - 1 - place {
+            0 => String::new(),
+            1 => "t".to_owned(),
+            power => format!("t^{power}"),
+        };
+        let number = if value.abs() == 1.0 && !letter.is_empty() { String::new() } else { exact(value.abs()) };
+        text += &[number, letter].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
     }
     text
 }
@@ -478,7 +479,10 @@ mod tests {
     #[test]
     fn polynomials_are_written_as_in_books() {
         assert_eq!(polynomial(&[-0.25, 0.5, -0.1875]), "-0.25 t^2 + 0.5 t - 0.1875");
-        assert_eq!(polynomial(&[f64::NAN, -0.0]), "nan t - 0");
+        assert_eq!(polynomial(&[1.0, 0.0, -1.0, 0.0]), "t^3 - t");
+        assert_eq!(polynomial(&[-1.0, 1.0]), "-t + 1");
+        assert_eq!(polynomial(&[0.0, 2.0, 0.0]), "0 t^2 + 2 t");
+        assert_eq!(polynomial(&[f64::NAN, -0.0]), "nan t");
         assert_eq!(polynomial(&[]), "0 (no coefficient)");
     }
 
