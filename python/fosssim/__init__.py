@@ -436,9 +436,10 @@ def grade(folder: PathLike, suite: PathLike | None = None, *, student: bool = Fa
         found = next((folder / name for name in names if (folder / name).is_file()), None)
         trace = b"" if found is None else _trace(found)
         judged, _ = session.ask("judge", number=number, has_trace=found is not None, file=trace)
-        for name, value in zip(("group", "scene", "verdict", "likely"), (group, scene, judged["verdict"], judged["likely"])):
+        for name, value in (("group", group), ("scene", scene), ("verdict", judged["verdict"])):
             table[name].append(value)
     whole, (data,) = session.ask("grade", name=folder.name)
+    table["likely"] = [scene["likely"] for scene in whole["scenes"]]
     table["points"] = [float(scene["points"]) for scene in whole["scenes"]]
     table["max_points"] = [float(scene["of"]) for scene in whole["scenes"]]
     points, of = float(whole["points"]), float(whole["of"])

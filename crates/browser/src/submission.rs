@@ -4,7 +4,7 @@ use crate::{
     parts::PageAnswer,
 };
 use fosssim_grading::{
-    SceneResult, Verdict,
+    SceneGrade, SceneResult, Verdict,
     plan::{self, MatchingScenes, Plan, PlannedGroup},
     result::Reason,
     traces,
@@ -110,7 +110,11 @@ impl DroppedSubmission {
         let results = results.ok_or("not all scenes have been judged")?;
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
         let points = |reached, most| json!({ "points": grade::reached(reached), "of": grade::points(most) });
-        let scenes: Vec<Value> = graded.scenes().map(|scene| points(scene.points, scene.max_points)).collect();
+        let scene = |scene: &SceneGrade| -> Value {
+            let likely = scene.settled.first().map(explanation::what);
+            json!({ "points": grade::reached(scene.points), "of": grade::points(scene.max_points), "likely": likely })
+        };
+        let scenes: Vec<Value> = graded.scenes().map(scene).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let cause = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
