@@ -10,6 +10,7 @@ mod collision;
 mod forces;
 mod integrators;
 mod matrix;
+mod nearby;
 mod observer;
 mod pair;
 mod pairs;

@@ -32,6 +32,7 @@ pub mod formulas {
 
 use super::{
     bodies::Bodies,
+    nearby::NearbyPairs,
     observer::Observer,
     search::{RootSearch, SearchCounts},
     state::State,
@@ -49,6 +50,8 @@ pub(super) struct Handler {
     kind: Collision,
     law: Law,
     detector: Detector,
+    /// The search of `simple`, which logs nothing of pairs that are apart.
+    nearby: Option<NearbyPairs>,
     hybrid: HybridScratch,
 }
 
@@ -61,10 +64,12 @@ impl Handler {
             | Collision::Hybrid { restitution, .. } => restitution,
             Collision::None | Collision::Penalty { .. } => 1.0,
         };
+        let is_simple = matches!(scene.collision, Collision::Simple { .. });
         Self {
             kind: scene.collision,
             law: Law::new(restitution, scene.time_step),
             detector: Detector::new(search, scene.steps()),
+            nearby: is_simple.then(|| NearbyPairs::for_many(scene, 0.0)).flatten(),
             hybrid: HybridScratch::default(),
         }
     }
@@ -86,7 +91,7 @@ impl Handler {
         match self.kind {
             Collision::None | Collision::Penalty { .. } => Ok(()),
             Collision::Simple { .. } => {
-                simple::handle(bodies, &self.law, q_start, state, observer);
+                simple::handle(bodies, &self.law, self.nearby.as_mut(), q_start, state, observer);
                 Ok(())
             }
             Collision::ContinuousTime { .. } => {

@@ -16,6 +16,7 @@ use crate::{
     scene::{CollisionDetection, Scene},
     sim::{
         bodies::Bodies,
+        nearby::is_beyond,
         pair::{Pair, PairKind},
     },
 };
@@ -24,7 +25,6 @@ use fosssim_num::{
     vector::{at, length, unit},
 };
 pub use pairs::PenaltyPairs;
-use pairs::is_beyond;
 pub use sweep::SweepOrder;
 pub use terms::PenaltyTerms;
 

@@ -7,6 +7,7 @@ use super::sweep::{Sweep, SweepOrder};
 use crate::{
     scene::{CollisionDetection, Scene},
     sim::{
+        nearby::{NearbyPairs, is_beyond},
         pair::{Pair, PairKind, pair},
         pairs::{Objects, PassCursor, is_end},
     },
@@ -20,6 +21,7 @@ pub struct PenaltyPairs {
     edges: Vec<[usize; 2]>,
     half_planes: usize,
     thickness: f64,
+    nearby: Option<NearbyPairs>,
     sweep: Option<Box<Sweep>>,
 }
 
@@ -27,12 +29,14 @@ impl PenaltyPairs {
     /// Creates the pairs for the bodies of a scene and this thickness.
     #[must_use]
     pub fn new(scene: &Scene, thickness: f64, detection: CollisionDetection) -> Self {
+        let is_contest = detection == CollisionDetection::Contest;
         Self {
             radii: scene.particles.iter().map(|particle| particle.radius).collect(),
             edges: scene.edges.iter().map(|edge| [edge.first, edge.second]).collect(),
             half_planes: scene.half_planes.len(),
             thickness,
-            sweep: (detection == CollisionDetection::Contest).then(|| Box::new(Sweep::new(scene))),
+            nearby: if is_contest { None } else { NearbyPairs::for_many(scene, thickness) },
+            sweep: is_contest.then(|| Box::new(Sweep::new(scene))),
         }
     }
 
@@ -49,7 +53,7 @@ impl PenaltyPairs {
     }
 
     /// Calls `hear` for all pairs, in the order in which they are summed, that may be closer at positions `x` (2N) than
-    /// their radii and the thickness.
+    /// their radii and the thickness. In large scenes few others are among them.
     pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;
@@ -66,28 +70,25 @@ impl PenaltyPairs {
             }
             return;
         }
+        let mut found = self.nearby.as_mut().and_then(|nearby| nearby.find(x));
         for i in 0..particles {
             let [others, _, half_planes] = row(i);
-            // Nearly all others are beyond reach, which is tested here with as few instructions as possible.
-            let (own, radius) = (at(x, i), self.radii[i]);
-            let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
-            for (j, (&other, other_radius)) in others.zip(places) {
-                if !is_beyond(Vec2::from(other) - own, (radius + other_radius) + self.thickness) {
-                    hear(pair(PairKind::ParticleParticle, i, j));
+            if let Some(found) = &mut found {
+                let [others, edges] = found.next(i);
+                others.for_each(|j| hear(pair(PairKind::ParticleParticle, i, j)));
+                edges.for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
+            } else {
+                // Nearly all others are beyond reach, which is tested here with as few instructions as possible.
+                let (own, radius) = (at(x, i), self.radii[i]);
+                let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
+                for (j, (&other, other_radius)) in others.zip(places) {
+                    if !is_beyond(Vec2::from(other) - own, (radius + other_radius) + self.thickness) {
+                        hear(pair(PairKind::ParticleParticle, i, j));
+                    }
                 }
+                edges_of(i).for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
             }
-            edges_of(i).for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
             half_planes.for_each(|half_plane| hear(pair(PairKind::ParticleHalfPlane, i, half_plane)));
         }
     }
-}
-
-/// Returns whether the vector is certainly not shorter than `reach`, without a square root.
-///
-/// With `s` the rounded `reach * reach`, a rounded squared length above `s` is at least the next number after `s`,
-/// hence above the exact square of `reach`; its root is then at least `reach` after rounding too. A negative `reach`
-/// is never undercut, and NaN gives `false`.
-#[inline]
-pub(super) fn is_beyond(n: Vec2, reach: f64) -> bool {
-    n.x * n.x + n.y * n.y > reach * reach
 }

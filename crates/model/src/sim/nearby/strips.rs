@@ -1,0 +1,226 @@
+//! Particles of like radii in strips: rows of the plane as high as two of them reach, each row sorted by x.
+//!
+//! Rows are numbered by a cast, which rounds towards zero: the strip around zero is twice as high, and no row is
+//! further from another than it would be by floors. From one search to the next few particles change places, so that
+//! sorting is an insertion here and there.
+use super::LEAST_REACH;
+use fosssim_num::vector::{Vec2, at};
+
+/// By how much strips are higher than two particles reach, so that rounding never puts two that reach each other more
+/// than one row apart.
+const HIGHER: f64 = 1.0 + 1e-6;
+
+/// From this row on rounding of a position may be a part of a row that counts.
+const ROUNDED_ROW: i64 = 1 << 30;
+
+/// The first row has all that is lower, the last one all that is higher.
+const FIRST_ROW: i64 = -LAST_ROW;
+const LAST_ROW: i64 = i64::MAX - 8;
+
+/// A particle as the last search saw it.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct PlacedParticle {
+    row: i64,
+    pub place: Vec2,
+    pub particle: u32,
+}
+
+/// The particles of one row, from `start` to `end` in the list of all.
+#[derive(Debug, Clone, Copy)]
+struct Strip {
+    number: i64,
+    start: usize,
+    end: usize,
+}
+
+/// Particles of like radii, sorted.
+#[derive(Debug, Clone)]
+pub(super) struct Strips {
+    entries: Vec<PlacedParticle>,
+    /// The rows that have particles, in order.
+    rows: Vec<Strip>,
+    /// The largest radius.
+    radius: f64,
+    /// The greatest reach of any two particles.
+    reach: f64,
+    /// The width whose square is still too small to decide anything.
+    width: f64,
+    /// Rows per length.
+    density: f64,
+}
+
+/// A rectangle.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Rectangle {
+    pub low: Vec2,
+    pub high: Vec2,
+}
+
+impl Strips {
+    /// Strips for these particles and their radii; two reach each other when they are closer than their radii and
+    /// `margin` together.
+    pub fn new(members: &[(u32, f64)], margin: f64) -> Self {
+        let radius = members.iter().map(|member| member.1).fold(f64::NEG_INFINITY, f64::max);
+        let reach = (radius + radius) + margin;
+        let zero = Vec2::zeros();
+        let entry = |&(particle, _): &(u32, f64)| PlacedParticle { row: 0, place: zero, particle };
+        Self {
+            entries: members.iter().map(entry).collect(),
+            rows: Vec::new(),
+            radius,
+            reach,
+            width: reach.max(LEAST_REACH),
+            density: 1.0 / (reach * HIGHER).max(LEAST_REACH),
+        }
+    }
+
+    /// Returns the largest radius.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// Returns all particles that have a place.
+    pub fn entries(&self) -> &[PlacedParticle] {
+        let end = self.rows.last().map_or(0, |row| row.end);
+        &self.entries[..end]
+    }
+
+    /// Sorts the particles by where they are now. What has no finite position is left out.
+    pub fn update(&mut self, x: &[f64]) {
+        for entry in &mut self.entries {
+            let place = at(x, entry.particle as usize);
+            (entry.row, entry.place) = if place.x.is_finite() && place.y.is_finite() {
+                (row_of(place.y, self.density), place)
+            } else {
+                (i64::MAX, Vec2::new(f64::INFINITY, f64::INFINITY))
+            };
+        }
+        sort(&mut self.entries);
+        let placed = self.entries.iter().rposition(|entry| entry.place.x.is_finite()).map_or(0, |last| last + 1);
+        self.rows.clear();
+        for (index, entry) in self.entries[..placed].iter().enumerate() {
+            match self.rows.last_mut() {
+                Some(row) if row.number == entry.row => row.end = index + 1,
+                _ => self.rows.push(Strip { number: entry.row, start: index, end: index + 1 }),
+            }
+        }
+    }
+
+    /// Calls `hear` for all pairs that may reach each other, each once, until it returns false. Returns the number of
+    /// tested pairs.
+    pub fn pairs(&self, mut hear: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
+        // No distance is less than zero, and NaN reaches nothing.
+        if !(self.reach > 0.0) {
+            return 0;
+        }
+        let (mut tested, squared) = (0, self.reach * self.reach);
+        for (index, row) in self.rows.iter().enumerate() {
+            let own = &self.entries[row.start..row.end];
+            for (number, one) in own.iter().enumerate() {
+                for other in &own[number + 1..] {
+                    tested += 1;
+                    let n = other.place - one.place;
+                    if n.x > self.width {
+                        break;
+                    }
+                    if !(n.dot(&n) > squared) && !hear(one, other) {
+                        return tested;
+                    }
+                }
+            }
+            let highest = row.number.saturating_add(if row.number.abs() < ROUNDED_ROW { 1 } else { 4 });
+            for above in self.rows[index + 1..].iter().take_while(|above| above.number <= highest) {
+                let others = &self.entries[above.start..above.end];
+                let mut first = 0;
+                for one in own {
+                    while others.get(first).is_some_and(|other| one.place.x - other.place.x > self.width) {
+                        first += 1;
+                    }
+                    for other in &others[first..] {
+                        tested += 1;
+                        let n = other.place - one.place;
+                        if n.x > self.width {
+                            break;
+                        }
+                        if !(n.dot(&n) > squared) && !hear(one, other) {
+                            return tested;
+                        }
+                    }
+                }
+            }
+        }
+        tested
+    }
+
+    /// Returns the lowest and the highest y of a row, and a little more.
+    fn heights(&self, row: i64) -> [f64; 2] {
+        let height = |row: i64| match row {
+            ..=FIRST_ROW => f64::NEG_INFINITY,
+            LAST_ROW.. => f64::INFINITY,
+            #[expect(clippy::cast_precision_loss, reason = "heights of such rows are no more precise")]
+            row => row as f64 / self.density,
+        };
+        [height(row.saturating_sub(2)), height(row.saturating_add(2))]
+    }
+
+    /// Calls `hear` for all particles in a rectangle, until it returns false. Returns the number of checked particles.
+    ///
+    /// `narrow` may cut a row short: it gets the lowest and the highest y of a row, and returns the part of the
+    /// rectangle's width that counts there.
+    pub fn within(
+        &self,
+        rectangle: Rectangle,
+        narrow: impl Fn([f64; 2]) -> [f64; 2],
+        mut hear: impl FnMut(&PlacedParticle) -> bool,
+    ) -> u64 {
+        let Rectangle { low, high } = rectangle;
+        let (lowest, highest) = (row_of(low.y, self.density), row_of(high.y, self.density));
+        let first = self.rows.partition_point(|row| row.number < lowest);
+        let mut seen = 0;
+        for row in self.rows[first..].iter().take_while(|row| row.number <= highest) {
+            let entries = &self.entries[row.start..row.end];
+            let [from, to] = narrow(self.heights(row.number));
+            let (from, to) = (low.x.max(from), high.x.min(to));
+            let first = entries.partition_point(|entry| entry.place.x < from);
+            for entry in entries[first..].iter().take_while(|entry| entry.place.x <= to) {
+                seen += 1;
+                if !hear(entry) {
+                    return seen;
+                }
+            }
+        }
+        seen
+    }
+}
+
+/// Returns the row of a height. It never falls as the height rises.
+fn row_of(y: f64, density: f64) -> i64 {
+    #[expect(clippy::cast_possible_truncation, reason = "what is too large is in the last row, which has room")]
+    let row = (y * density) as i64;
+    row.clamp(FIRST_ROW, LAST_ROW)
+}
+
+/// Sorts entries by row and x: nearly sorted ones with one comparison each, others as any list.
+fn sort(entries: &mut [PlacedParticle]) {
+    let is_before = |one: &PlacedParticle, other: &PlacedParticle| {
+        one.row < other.row || one.row == other.row && one.place.x < other.place.x
+    };
+    // In a large scene a few of a hundred change rows in a step, and pass all entries between.
+    let mut moves = 8 * entries.len();
+    for index in 1..entries.len() {
+        if !is_before(&entries[index], &entries[index - 1]) {
+            continue;
+        }
+        let (entry, mut place) = (entries[index], index);
+        while place > 0 && is_before(&entry, &entries[place - 1]) {
+            if moves == 0 {
+                entries[place] = entry;
+                entries.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.place.x.total_cmp(&b.place.x)));
+                return;
+            }
+            entries[place] = entries[place - 1];
+            (place, moves) = (place - 1, moves - 1);
+        }
+        entries[place] = entry;
+    }
+}
