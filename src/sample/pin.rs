@@ -1,8 +1,8 @@
-//! A mistake that is pinned to a copy of this program: under every name and however it is started, the copy is the sample,
-//! and makes this mistake. This gives a wrong program that can be handed in like a student's.
+//! A mistake that is pinned to a copy of this program: under every name and however it is started, the copy is the
+//! sample, and makes this mistake. This gives a wrong program that can be handed in like a student's.
 //!
-//! The program has a place for the mistake's id, and in the copy the id is there. The copy need not read anything when it
-//! runs, which the sandbox might not allow.
+//! The program has a place for the mistake's id, and in the copy the id is there. The copy need not read anything when
+//! it runs, which the sandbox might not allow.
 
 /// The id in a copy that makes no mistake. Only the demo makes one, and removes it.
 pub const RIGHT: &str = "right";
@@ -44,7 +44,8 @@ fn read(place: &Place) -> Option<&str> {
     std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
 }
 
-/// Writes a mistake's id into a copy of this program; nothing when it has no place of its own for it, or the id no room.
+/// Writes a mistake's id into a copy of this program; nothing when it has no place of its own for it, or the id no
+/// room.
 #[must_use]
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = MARK_BACKWARDS;

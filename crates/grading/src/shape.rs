@@ -61,8 +61,8 @@ const MILESTONES: [&str; Assignment::ALL.len()] = {
     keys
 };
 
-/// Declares the tables of the file: each with its keys, and the values that are read from them once their shape has been
-/// checked.
+/// Declares the tables of the file: each with its keys, and the values that are read from them once their shape has
+/// been checked.
 macro_rules! tables {
     ($($raw:ident $keys:ident { $($key:ident: $value:ty = $kind:expr, $is_required:literal;)+ })+) => {
         $(

@@ -87,8 +87,8 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// Returns the least work of the scene's own run: a detection pass and an iteration of Newton's method for each step, if
-/// there are any. Nearly all traces stay below the allowed multiple of this, and the scene need not be run.
+/// Returns the least work of the scene's own run: a detection pass and an iteration of Newton's method for each step,
+/// if there are any. Nearly all traces stay below the allowed multiple of this, and the scene need not be run.
 fn least(scene: &Scene) -> u64 {
     let pass = match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => pairs(scene).count() as u64,

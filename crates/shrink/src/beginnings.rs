@@ -10,8 +10,8 @@ use fosssim_num::vector::at;
 const MOST_STEPS: usize = 6;
 
 /// Returns scenes to begin with, each with its wrong step, in the order in which they are tried: each of these wrong
-/// steps alone, then the first one with the step before it, then the whole run up to it. `trace` is the program's trace of the scene; steps count
-/// from 1 and ascend. Parts that only a display uses are removed.
+/// steps alone, then the first one with the step before it, then the whole run up to it. `trace` is the program's trace
+/// of the scene; steps count from 1 and ascend. Parts that only a display uses are removed.
 #[must_use]
 pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene)> {
     let Some(&first) = wrong.first() else { return Vec::new() };

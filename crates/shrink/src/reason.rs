@@ -145,7 +145,8 @@ fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
     let pair = first.detail.pair().map(|pair| pair.kind);
     let is_ordinary = !matches!(first.detail, FindingDetail::BeyondReach { .. });
     let first = FirstFinding { kind: first.kind(), pair, is_plain: is_plain(&first.detail), is_ordinary };
-    // Behind a plain fault, decisions about the program's own positions may be borderline where the reference's are not.
+    // Behind a plain fault, decisions about the program's own positions may be borderline where the reference's are
+    // not.
     let has_margin = || fair.borderline == 0 || (first.is_plain && clear_decisions(scene).is_some());
     has_margin().then_some(TraceFault::Wrong(first))
 }

@@ -66,8 +66,8 @@ impl<'a> Reducer<'a> {
         Self { most_runs, ..self }
     }
 
-    /// Begins with the first of these steps' scenes on which the program is wrong for the reason, and makes it smaller; `None`
-    /// if there is no such scene.
+    /// Begins with the first of these steps' scenes on which the program is wrong for the reason, and makes it smaller;
+    /// `None` if there is no such scene.
     #[must_use]
     pub fn reduce(self, beginnings: Vec<(u32, Scene)>) -> Option<SmallScene> {
         let mut runs = 0;

@@ -3,8 +3,8 @@
 //! It is written independently of [`fosssim_model::sim`], and by request makes one of the documented mistakes of the
 //! [`CATALOGUE`], which also holds correct variants. The sample program is this simulator with arguments and a file;
 //! `diagnose` uses it to find the mistake that reproduces a submission. It is **never used for judging**: verdicts come
-//! from [`fosssim_model::sim`] alone. It touches no file and no process, and prints nothing; the sample program has what
-//! hostile programs do in addition to simulating.
+//! from [`fosssim_model::sim`] alone. It touches no file and no process, and prints nothing; the sample program has
+//! what hostile programs do in addition to simulating.
 //!
 //! The mathematics is that of `simulation.md` and `collisions.md`. From the crates below it takes what the course
 //! supplies: the scene, the vectors, the linear solver and the root finder.

@@ -31,17 +31,15 @@ const HUNDREDS: [(&str, usize); 22] = [
     ("original", 9),
     ("render", 16),
     // The class page has filters; the second figures, the second list of mistakes and the table of the rest went.
-    // Smallest scenes in all reports; their own type went. Formulas have Unicode's signs; nothing went instead. Pages are
-    // templates.
-    // The step by hand; the templates of pages took 400 lines before.
-    // Impulses, rigid motions, systems and penalty by hand; drawn scenes and the second thread of `shrink`, and a
-    // shell quoter went.
+    // Smallest scenes in all reports; their own type went. Formulas have Unicode's signs; nothing went instead. Pages
+    // are templates. The step by hand; the templates of pages took 400 lines before. Impulses, rigid motions, systems
+    // and penalty by hand; drawn scenes and the second thread of `shrink`, and a shell quoter went.
     ("report", 77),
     ("sandbox", 56),
-    // Extensions, removals and imports are not overwritten unseen, and uploads wait at a deadline; nothing went instead.
-    // Classes have filters and equal programs, submissions a comparison, CSV points of groups, suites names; the text of
-    // reports in pages, and the statement for changes between attempts went.
-    // Sign-in at a provider is new; passwords went, with their digests and limits.
+    // Extensions, removals and imports are not overwritten unseen, and uploads wait at a deadline; nothing went
+    // instead. Classes have filters and equal programs, submissions a comparison, CSV points of groups, suites names;
+    // the text of reports in pages, and the statement for changes between attempts went. Sign-in at a provider is new;
+    // passwords went, with their digests and limits.
     ("server", 151),
     ("shrink", 8),
     // The table of `--timings`.

@@ -131,8 +131,8 @@ struct Mistakes {
 }
 
 impl TraceContent<'_> {
-    /// Returns the detection calls, each with its step, those of the first wrong step first: those that only follow from
-    /// where the passes before them led, which are no mistakes of detection, and those that are wrong.
+    /// Returns the detection calls, each with its step, those of the first wrong step first: those that only follow
+    /// from where the passes before them led, which are no mistakes of detection, and those that are wrong.
     fn calls<'e>(&self, evidence: &'e Evidence) -> (Vec<StepCall<'e>>, Vec<StepCall<'e>>) {
         let first = self.case.first().map(|first| first.step);
         let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));

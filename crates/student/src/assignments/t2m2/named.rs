@@ -150,7 +150,7 @@ named_edits! {
         => "1 is used instead of (x32 + t d32).(x32 + t d32)";
     SIGNED_DISTANCE "signed-distance" [PH] 2.5: Formula(Subject::HalfPlaneOverlap, signed_distance)
         => "The overlap is a signed distance, which is right on one side of the boundary only"
-        => "the polynomial is -(dx.n) t + r |n| + (p-x).n, the difference of two lengths, expected that of their squares";
+        => "the polynomial is -(dx.n) t + r |n| + (p-x).n, a difference of lengths, expected that of squares";
     NO_SPEED_FACTOR "no-speed-factor" [PH] 2.5: Formula(Subject::HalfPlaneApproach, no_speed_factor)
         => "The approach does not take the side of the half-plane into account: it is right on one side only"
         => "the factor (dx.n) is missing";
