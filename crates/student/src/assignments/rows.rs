@@ -71,20 +71,55 @@ impl<M> RowOf<M> {
     }
 }
 
+/// Returns the rows with their sentences, which `text` has in the order of the rows. Each row has four lines there: its
+/// id, its two sentences, and an empty line. The compiler names the row whose id does not come next.
+pub(super) const fn with_sentences<M: Copy, const N: usize>(
+    mut rows: [RowOf<M>; N],
+    text: &'static str,
+) -> [RowOf<M>; N] {
+    let (mut row, mut rest) = (0, text);
+    while row < N {
+        let id = split_line(rest);
+        let what = split_line(id.1);
+        let term = split_line(what.1);
+        let end = split_line(term.1);
+        assert!(are_equal(id.0, rows[row].id) && end.0.is_empty(), "{}", rows[row].id);
+        (rows[row].what, rows[row].term, rest) = (what.0, term.0, end.1);
+        row += 1;
+    }
+    assert!(rest.is_empty(), "{}", rest);
+    rows
+}
+
+/// Returns the first line of a text, and what follows it.
+const fn split_line(text: &str) -> (&str, &str) {
+    let mut end = 0;
+    while text.as_bytes()[end] != b'\n' {
+        end += 1;
+    }
+    (text.split_at(end).0, text.split_at(end + 1).1)
+}
+
+const fn are_equal(one: &str, other: &str) -> bool {
+    let mut at = 0;
+    while at < one.len() && at < other.len() && one.as_bytes()[at] == other.as_bytes()[at] {
+        at += 1;
+    }
+    at == one.len() && at == other.len()
+}
+
 /// A table of rows, and the type of its mistakes: name of the type, name of the table, further variants that hold
-/// mistakes of other tables, and the type of edits. A mistake of a formula has its edit in brackets, from which the
-/// student's program follows.
+/// mistakes of other tables, and the type of edits. A group may name a file, which has the sentences of its rows and of
+/// the rows behind them. A mistake of a formula has its edit in brackets, from which the student's program follows.
 macro_rules! rows {
     (
         $(#[$doc:meta])* $type:ident $table:ident [$($of:ident $other:ident),*] [$($edits:ident)?]
-        $($kind:ident $area:ident {
-            $($mistake:ident $id:literal $([$edit:expr])?: $what:literal => $term:literal;)*
-        })*
+        $($kind:ident $area:ident $($sentences:literal)? { $($mistake:ident $id:literal $([$edit:expr])?;)* })*
     ) => {
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum $type {
-            $($(#[doc = $what] $mistake,)*)*
+            $($(#[doc = $id] $mistake,)*)*
             $(#[doc = "One of another table."] $of($other),)*
         }
 
@@ -102,14 +137,17 @@ macro_rules! rows {
         $crate::assignments::rows::rows!(@ $type [$($edits)?] $($($mistake $([$edit])?,)*)*);
 
         /// All rows of this table, in the order of the assignment.
-        pub const $table: &[$crate::assignments::rows::RowOf<$type>] = &[$($($crate::assignments::rows::RowOf {
-            mistake: $type::$mistake,
-            id: $id,
-            kind: $crate::assignments::rows::RowKind::$kind,
-            area: $crate::assignments::rows::Area::$area,
-            what: $what,
-            term: $term,
-        },)*)*];
+        pub const $table: &[$crate::assignments::rows::RowOf<$type>] = &$crate::assignments::rows::with_sentences(
+            [$($($crate::assignments::rows::RowOf {
+                mistake: $type::$mistake,
+                id: $id,
+                kind: $crate::assignments::rows::RowKind::$kind,
+                area: $crate::assignments::rows::Area::$area,
+                what: "",
+                term: "",
+            },)*)*],
+            concat!($($(include_str!($sentences), "\n",)?)*),
+        );
     };
     (@ $type:ident [] $($rest:tt)*) => {};
     (@ $type:ident [$edits:ident] $($mistake:ident $([$edit:expr])?,)*) => {
