@@ -45,7 +45,7 @@ impl LatePolicy {
 
     /// Returns the delay of a submission that arrived at this moment, with the student's own due date if there is one.
     /// There is none for a submission in time, or if the assignment has no rule for late ones.
-    pub(crate) fn late(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
+    pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
         // taken late any more, the work that was taken keeps its price.
@@ -65,7 +65,7 @@ impl Lateness {
     /// due date, `own_due`.
     pub(crate) fn from_row(row: &Row) -> Result<Option<Self>, DbError> {
         let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
-        Ok(policy.late(row.maybe_int("own_due")?, row.int("created_at")?))
+        Ok(policy.lateness(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
     /// Returns the rest of the grader's points.
@@ -83,17 +83,17 @@ mod tests {
     fn each_day_that_has_begun_costs_the_same() {
         let due = 1_700_000_000_000;
         let policy = LatePolicy { due_at: Some(due), late_days: 3, late_percent: 40, time_zone: None };
-        let late = |after| policy.late(None, due + after).map(|late| (late.days, late.percent));
+        let late = |after| policy.lateness(None, due + after).map(|late| (late.days, late.percent));
         assert_eq!([late(-DAY), late(0), late(1)], [None, None, Some((1, 40))]);
         assert_eq!([late(DAY), late(DAY + 1)], [Some((1, 40)), Some((2, 80))]);
         assert_eq!([late(3 * DAY), late(9 * DAY)], [Some((3, 100)); 2], "it never costs more than all");
-        assert_eq!(policy.late(Some(due + DAY), due + DAY), None, "an extension moves the due date");
+        assert_eq!(policy.lateness(Some(due + DAY), due + DAY), None, "an extension moves the due date");
         assert_eq!(policy.closes_at(due), due + 3 * DAY);
-        assert_eq!(policy.late(Some(due - DAY), due), None, "and never forwards");
+        assert_eq!(policy.lateness(Some(due - DAY), due), None, "and never forwards");
         let closed = LatePolicy { late_days: 0, ..policy };
-        assert_eq!(closed.late(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
+        assert_eq!(closed.lateness(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
         let never = LatePolicy { late_percent: 0, ..closed };
-        assert_eq!(never.late(None, due + 1), None, "where nothing is said of late work, nothing is late");
+        assert_eq!(never.lateness(None, due + 1), None, "where nothing is said of late work, nothing is late");
         assert_eq!(Lateness { days: 1, percent: 10 }.left_of("85.5"), "76.95");
     }
 
@@ -105,7 +105,7 @@ mod tests {
         let policy = LatePolicy { due_at: Some(due), late_days: 2, late_percent: 10, time_zone: zone };
         let days = |came_at: &str| {
             let came_at = crate::calendar::read(came_at).expect("a moment");
-            policy.late(None, came_at).map(|late| late.days)
+            policy.lateness(None, came_at).map(|late| late.days)
         };
         assert_eq!(days("2026-10-25T23:59+01:00"), Some(1));
         assert_eq!(days("2026-10-26T00:00+01:00"), Some(2));

@@ -4,7 +4,7 @@ use crate::{
     health,
     lti::score,
     queue::{self, BuriedJob, Completion, Failure, Lease, QueuePolicy},
-    task::{JUDGE_ERROR, Outcome, rounded},
+    task::{JUDGE_ERROR, Outcome, round_points},
     values,
 };
 use std::time::Duration;
@@ -202,7 +202,7 @@ async fn write_result(
     }
     let text = match (&outcome.points, &outcome.max_points) {
         (Some(points), Some(most)) => {
-            format!("{}: {} of {} points", outcome.code, rounded(points), rounded(most))
+            format!("{}: {} of {} points", outcome.code, round_points(points), round_points(most))
         }
         _ => outcome.code.clone(),
     };

@@ -179,7 +179,7 @@ impl Provider {
         let metadata = self.metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
         let by_header = methods.is_empty() || methods.contains(&CoreClientAuthMethod::ClientSecretBasic);
-        let redirect = RedirectUrl::new(redirect.to_owned()).map_err(rejected)?;
+        let redirect = RedirectUrl::new(redirect.to_owned()).map_err(untrusted_answer)?;
         Ok(CoreClient::from_provider_metadata(metadata, self.client.clone(), Some(self.secret.clone()))
             .set_redirect_uri(redirect)
             .set_auth_type(if by_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
@@ -214,13 +214,13 @@ impl Provider {
     ) -> Result<ProviderPerson, ProviderFault> {
         let client = self.client(FRESH, redirect).await?;
         let http = |request| send(self.agent.clone(), request);
-        let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(rejected)?;
+        let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(untrusted_answer)?;
         let asked = asked.set_pkce_verifier(PkceCodeVerifier::new(words.verifier)).request_async(&http).await;
         let answer = asked.map_err(|error| match error {
             RequestTokenError::Request(_) => ProviderFault::Away(format!("{} does not answer", self.label)),
-            error => rejected(error),
+            error => untrusted_answer(error),
         })?;
-        let token = answer.id_token().ok_or_else(|| rejected(anyhow!("there is no token about a person")))?;
+        let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("there is no token about a person")))?;
         let nonce = Nonce::new(words.nonce);
         let claims = match claims(&client, token, &nonce) {
             // Providers change their keys.
@@ -229,7 +229,7 @@ impl Provider {
             }
             claims => claims,
         };
-        let claims = claims.map_err(rejected)?;
+        let claims = claims.map_err(untrusted_answer)?;
         let said = said!(claims);
         // Some providers put the address into the token, others only into a further answer.
         let more = match said.email {
@@ -249,12 +249,12 @@ impl Provider {
         let Ok(asked) = client.user_info(token, Some(subject)) else { return Ok(None) };
         let http = |request| send(self.agent.clone(), request);
         let claims: UserInfoClaims<EmptyAdditionalClaims, CoreGenderClaim> =
-            asked.request_async(&http).await.map_err(rejected)?;
+            asked.request_async(&http).await.map_err(untrusted_answer)?;
         Ok(Some(said!(claims)))
     }
 
     fn read(&self, subject: String, said: SaidClaims) -> Result<ProviderPerson, ProviderFault> {
-        ensure((1..=255).contains(&subject.len()), rejected(anyhow!("sub must be 1 to 255 characters long")))?;
+        ensure((1..=255).contains(&subject.len()), untrusted_answer(anyhow!("sub must be 1 to 255 characters long")))?;
         let email = said.email.map(|email| email.to_ascii_lowercase());
         let parts = email.as_deref().and_then(|email| email.rsplit_once('@'));
         let mailbox = parts.filter(|(_, domain)| said.is_confirmed && self.domain.as_deref() == Some(domain));
@@ -277,7 +277,7 @@ fn claims<'a>(
 }
 
 /// Returns the fault of an answer that is not believed, with all its causes.
-fn rejected(error: impl Into<anyhow::Error>) -> ProviderFault {
+fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
     let why: String = format!("{:#}", error.into()).chars().filter(|c| !c.is_control()).take(300).collect();
     ProviderFault::Rejected(format!("the provider's answer is not accepted: {why}"))
 }

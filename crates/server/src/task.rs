@@ -157,8 +157,9 @@ impl Outcome {
 }
 
 /// Returns a number of points with two digits at most, for people.
-pub fn rounded(number: &str) -> String {
-    let Ok(value) = number.parse::<f64>() else { return number.to_owned() };
+pub fn round_points(number: impl ToString) -> String {
+    let number = number.to_string();
+    let Ok(value) = number.parse::<f64>() else { return number };
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }

@@ -87,7 +87,7 @@ pub(super) async fn signing(database: &Database) -> Result<SigningKey, DbError> 
 ///
 /// # Errors
 /// An error of the database.
-pub async fn published(database: &Database) -> Result<Value, DbError> {
+pub async fn public_keys(database: &Database) -> Result<Value, DbError> {
     let mut keys = Vec::new();
     for row in &all(database).await? {
         keys.push(json!({

@@ -16,7 +16,7 @@ mod sender;
 mod trust;
 
 pub use client::{Client, ServiceFault};
-pub use keys::{new_key, published};
+pub use keys::{new_key, public_keys};
 pub use message::{
     Arrival, Context, DeepLinking, LtiPerson, LtiRole, Message, Rejection, Resource, deep_linking_response,
 };

@@ -10,7 +10,7 @@ use crate::{
     late::Lateness,
     queue::{self, Lane, NewJob, Turn},
     shown::ShownGrade,
-    task::rounded,
+    task::round_points,
     values,
 };
 use serde::{Deserialize, Serialize};
@@ -204,9 +204,9 @@ pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) ->
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
     transaction.execute(statement, values![parcel.order.link, parcel.order.account, parcel.stamp]).await?;
-    let (score, short) = (&parcel.content, |number: f64| rounded(&number.to_string()));
+    let score = &parcel.content;
     let what = match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => format!("{} of {} points", short(points), short(most)),
+        (Some(points), Some(most)) => format!("{} of {} points", round_points(points), round_points(most)),
         _ => score["gradingProgress"].as_str().unwrap_or_default().to_owned(),
     };
     note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await

@@ -36,7 +36,7 @@ pub(super) async fn examine(
     match (form, is_program(&start)) {
         (None | Some(Form::Program), true) => return Ok(Form::Program),
         (Some(Form::Program), false) => {
-            let found = fosssim_intake::described(&start);
+            let found = fosssim_intake::describe(&start);
             return Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}")));
         }
         _ => {}

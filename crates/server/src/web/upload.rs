@@ -126,14 +126,14 @@ pub(super) fn is_form(request: &Request) -> bool {
 }
 
 /// Returns the size of the body that a request announces.
-pub(super) fn announced(request: &Request) -> Option<u64> {
+pub(super) fn announced_size(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
 
 async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     let deadline = Instant::now() + place.patience * PAUSES + fair_time(most);
     if !is_form(&request) {
-        if announced(&request).is_some_and(|announced| announced > most) {
+        if announced_size(&request).is_some_and(|announced| announced > most) {
             return Err(Problem::too_large(most));
         }
         let body: Body = request.into_body();

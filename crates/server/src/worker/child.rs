@@ -92,7 +92,7 @@ impl Child {
     }
 
     /// Waits for its end.
-    pub(super) async fn ended(&self) -> End {
+    pub(super) async fn wait(&self) -> End {
         let mut end = self.end.clone();
         match end.wait_for(Option::is_some).await {
             Ok(end) => (*end).unwrap_or(End::Signal(0)),
@@ -163,7 +163,7 @@ mod tests {
 
     #[tokio::test]
     async fn ends_are_told() {
-        let end = async |script| Child::start(shell(script)).expect("a child").ended().await;
+        let end = async |script| Child::start(shell(script)).expect("a child").wait().await;
         assert_eq!(end("exit 3").await, End::Code(3));
         assert_eq!(end("kill -SEGV $$").await, End::Signal(libc::SIGSEGV));
         assert!(Child::start(Command::new("/nowhere/fosssim-oracle")).is_err());
@@ -171,14 +171,14 @@ mod tests {
 
     #[tokio::test]
     async fn a_grader_reaches_its_guard_and_not_its_worker() {
-        let end = async |script| Child::start(shell(script)).expect("a child").ended().await;
+        let end = async |script| Child::start(shell(script)).expect("a child").wait().await;
         assert_eq!(end("kill -KILL $PPID; sleep 1000").await, End::Signal(libc::SIGKILL));
         assert_eq!(end("kill -STOP $PPID; exit 4").await, End::Code(4), "a guard that was stopped goes on");
         let child = Child::start(shell("trap 'exit 7' TERM; kill -USR1 $PPID; while :; do sleep 0.01; done"));
         let child = child.expect("a child");
         // The trap may not be set yet: the shell ends by the signal then.
         child.interrupt();
-        assert!(matches!(child.ended().await, End::Code(7) | End::Signal(libc::SIGTERM | libc::SIGUSR1)));
+        assert!(matches!(child.wait().await, End::Code(7) | End::Signal(libc::SIGTERM | libc::SIGUSR1)));
     }
 
     #[tokio::test]
@@ -192,7 +192,7 @@ mod tests {
         }
         let grandchild: i32 = std::fs::read_to_string(&file).expect("a file").trim().parse().expect("a number");
         child.kill();
-        assert_eq!(child.ended().await, End::Signal(libc::SIGKILL));
+        assert_eq!(child.wait().await, End::Signal(libc::SIGKILL));
         // It has ended, or is a zombie that waits for init; it does not run. Dying takes a moment.
         let start = std::time::Instant::now();
         loop {

@@ -113,7 +113,7 @@ impl Program {
         command.stderr(fs::File::create(&messages).map_err(|error| format!("cannot write messages: {error}"))?);
         let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
         let end = tokio::select! {
-            end = child.ended() => Some(end),
+            end = child.wait() => Some(end),
             () = stop.cancelled() => None,
             () = tokio::time::sleep(PROOF_TIME) => None,
         };
@@ -124,7 +124,7 @@ impl Program {
             Some(End::Signal(signal)) => Err(format!("`{step}` was ended by signal {signal}")),
             None => {
                 child.kill();
-                child.ended().await;
+                child.wait().await;
                 Err(format!("`{step}` did not end"))
             }
         }
@@ -245,17 +245,17 @@ async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Resu
     let (mut left, mut is_late) = (most, false);
     loop {
         tokio::select! {
-            end = child.ended() => return Ok((end, is_late)),
+            end = child.wait() => return Ok((end, is_late)),
             () = stop.cancelled() => {
                 child.kill();
-                child.ended().await;
+                child.wait().await;
                 return Err(GraderFault::Stopped);
             }
             () = tokio::time::sleep(left) => match is_late {
                 false => child.interrupt(),
                 true => {
                     child.kill();
-                    return Ok((child.ended().await, true));
+                    return Ok((child.wait().await, true));
                 }
             },
         }

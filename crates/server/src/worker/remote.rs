@@ -80,7 +80,7 @@ impl RemoteSource {
         asked.map_err(|error| SourceError::Away(error.to_string()))?
     }
 
-    async fn held(
+    async fn send_with_lease(
         &self,
         path: &'static str,
         body: impl Serialize + Send + 'static,
@@ -164,19 +164,19 @@ impl JobSource for RemoteSource {
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
-        self.held("renew", Renewal { lease: lease.clone(), progress }).await
+        self.send_with_lease("renew", Renewal { lease: lease.clone(), progress }).await
     }
 
     async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<LeaseAnswer, SourceError> {
-        self.held("finish", FinishedJob { lease: lease.clone(), outcome: outcome.clone() }).await
+        self.send_with_lease("finish", FinishedJob { lease: lease.clone(), outcome: outcome.clone() }).await
     }
 
     async fn release(&self, lease: &Lease) -> Result<LeaseAnswer, SourceError> {
-        self.held("release", lease.clone()).await
+        self.send_with_lease("release", lease.clone()).await
     }
 
     async fn fail(&self, lease: &Lease, fault: &str) -> Result<LeaseAnswer, SourceError> {
-        self.held("fail", JobFault { lease: lease.clone(), fault: fault.to_owned() }).await
+        self.send_with_lease("fail", JobFault { lease: lease.clone(), fault: fault.to_owned() }).await
     }
 
     async fn fetch(&self, lease: &Lease, digest: &Digest, file: &Path) -> Result<(), SourceError> {

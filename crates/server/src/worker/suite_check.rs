@@ -27,9 +27,9 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     command.stderr(messages.reopen().map_err(|error| error.to_string())?);
     limit(&mut command, MEMORY, SECONDS);
     let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
-    let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.ended()).await else {
+    let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.wait()).await else {
         child.kill();
-        child.ended().await;
+        child.wait().await;
         return Err(format!("the grader did not finish checking it within {SECONDS} seconds"));
     };
     let said = fs::read(messages.path()).unwrap_or_default();

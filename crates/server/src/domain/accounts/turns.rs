@@ -51,7 +51,7 @@ pub struct ArchiveTurn {
 }
 
 impl TurnState {
-    fn taken(&self, account: i64, now: Instant) -> f64 {
+    fn used_seconds(&self, account: i64, now: Instant) -> f64 {
         let Some((seconds, at)) = self.taken.get(&account) else { return 0.0 };
         seconds * 0.5_f64.powf(now.saturating_duration_since(*at).as_secs_f64() / HALF_LIFE)
     }
@@ -59,7 +59,7 @@ impl TurnState {
     /// Returns the ticket that is next, if a turn is free.
     fn first(&self, now: Instant) -> Option<u64> {
         let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
-        let rank = |(ticket, account): &(&u64, &i64)| (self.taken(**account, now), **ticket);
+        let rank = |(ticket, account): &(&u64, &i64)| (self.used_seconds(**account, now), **ticket);
         let first = able.min_by(|one, other| rank(one).partial_cmp(&rank(other)).unwrap_or(std::cmp::Ordering::Equal));
         first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < AT_ONE_TIME)
     }
@@ -116,7 +116,7 @@ impl Drop for ArchiveTurn {
             if state.taken.len() > MANY {
                 state.taken.retain(|_, (_, at)| now.saturating_duration_since(*at).as_secs_f64() < 10.0 * HALF_LIFE);
             }
-            let seconds = state.taken(self.account, now) + now.saturating_duration_since(began).as_secs_f64();
+            let seconds = state.used_seconds(self.account, now) + now.saturating_duration_since(began).as_secs_f64();
             state.taken.insert(self.account, (seconds, now));
         }
         drop(state);

@@ -200,7 +200,7 @@ impl Settings {
     ///
     /// # Errors
     /// The first setting that makes no sense.
-    pub fn checked(&self, suites: &Suites) -> Result<Self, Problem> {
+    pub fn validate(&self, suites: &Suites) -> Result<Self, Problem> {
         let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
         settings.check(suites)?;
         Ok(settings)
@@ -260,7 +260,7 @@ impl Settings {
     }
 
     /// Returns the forms that are taken, in words.
-    pub fn taken(&self) -> String {
+    pub fn describe_forms(&self) -> String {
         let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
         taken.map(Form::describe).collect::<Vec<_>>().join(" or ")
     }

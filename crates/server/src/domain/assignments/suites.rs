@@ -80,7 +80,7 @@ impl Suites {
     }
 
     /// Returns the suites' names and titles; none if the grader can't be called.
-    pub fn listed(&self) -> impl Iterator<Item = (&str, &str)> {
+    pub fn titles(&self) -> impl Iterator<Item = (&str, &str)> {
         self.names.iter().zip(&self.titles).map(|(name, title)| (name.as_str(), title.as_str()))
     }
 

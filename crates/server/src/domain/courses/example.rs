@@ -25,7 +25,7 @@ impl App {
             if known.int("courses")? > 0 {
                 return Err(Problem::conflict("this server has courses already", "start it without --example"));
             }
-            let settings = Settings::default().checked(&self.suites)?;
+            let settings = Settings::default().validate(&self.suites)?;
             let course = admin::make_course(&mut transaction, COURSE).await?;
             let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
                 VALUES (?, ?, ?, 1, ?, {now})";

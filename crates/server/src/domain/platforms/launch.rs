@@ -199,7 +199,7 @@ async fn arrive(
     let link = transaction.row(statement, values![id, &resource.id]).await?;
     let link = match link {
         Some(link) => Some((link.int("id")?, link.text("slug")?)),
-        None => named(transaction, id, course, arrival).await?,
+        None => find_named_assignment(transaction, id, course, arrival).await?,
     };
     match link {
         Some((link, assignment)) => {
@@ -216,7 +216,7 @@ async fn arrive(
 }
 
 /// Returns the assignment that a link names by itself: it was chosen by deep linking, or written by who made the link.
-async fn named(
+async fn find_named_assignment(
     transaction: &mut Transaction,
     place: i64,
     course: i64,

@@ -64,7 +64,7 @@ impl App {
     /// # Errors
     /// When the database does not answer.
     pub async fn platform_keys(&self) -> Result<Value, Problem> {
-        Ok(lti::published(&self.0.database).await?)
+        Ok(lti::public_keys(&self.0.database).await?)
     }
 }
 

@@ -42,11 +42,11 @@ impl Member {
         let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
             WHERE course = ? AND (visible = 1 OR ? = 1) ORDER BY id";
         let assignments: Vec<Assignment> = transaction.all(statement, values![self.course, self.is_staff]).await?;
-        Ok(assignments.into_iter().map(|assignment| self.shown(assignment)).collect())
+        Ok(assignments.into_iter().map(|assignment| self.hide_course_suite(assignment)).collect())
     }
 
     /// Returns an assignment as they may see it: which suite of the course it is graded by is staff's to know.
-    fn shown(&self, mut assignment: Assignment) -> Assignment {
+    fn hide_course_suite(&self, mut assignment: Assignment) -> Assignment {
         assignment.settings.suite_archive.take_if(|_| !self.is_staff);
         assignment
     }
@@ -56,7 +56,7 @@ impl Member {
     /// # Errors
     /// When there is none.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
-        Ok(self.shown(self.read_at(slug).await?.1))
+        Ok(self.hide_course_suite(self.read_at(slug).await?.1))
     }
 
     /// Begins a transaction that reads, and finds the assignment.
@@ -178,7 +178,7 @@ impl Member {
     /// # Errors
     /// When there is none of this name.
     pub async fn report(&self, id: i64, name: &str) -> Result<OutputFile, Problem> {
-        let submission = self.kept(id).await?;
+        let submission = self.read_with_bytes(id).await?;
         submission
             .grade
             .and_then(|grade| grade.outcome.files.into_iter().find(|file| file.name == name))
@@ -190,7 +190,7 @@ impl Member {
     /// # Errors
     /// When they may see none of this number.
     pub async fn upload(&self, id: i64) -> Result<(Submission, Artifact), Problem> {
-        let submission = self.kept(id).await?;
+        let submission = self.read_with_bytes(id).await?;
         let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));
         let digest: Digest = submission.digest.parse().map_err(|_| wrong("digest"))?;
         let size = u64::try_from(submission.size).map_err(|_| wrong("size"))?;
@@ -198,7 +198,7 @@ impl Member {
     }
 
     /// Returns a submission whose bytes are still there.
-    async fn kept(&self, id: i64) -> Result<Submission, Problem> {
+    async fn read_with_bytes(&self, id: i64) -> Result<Submission, Problem> {
         let submission = self.submission(id).await?;
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }

@@ -165,7 +165,7 @@ impl Remote {
     }
 
     /// Returns the task of a job that the worker holds right now.
-    async fn held(&self, lease: &Lease) -> Result<Task, Problem> {
+    async fn leased_task(&self, lease: &Lease) -> Result<Task, Problem> {
         let mut transaction = self.app.0.database.first().read().await?;
         let statement = "SELECT payload FROM job
             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
@@ -179,7 +179,7 @@ impl Remote {
     /// # Errors
     /// When the job is not its own (any more), or the artifact is not the job's.
     pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtifact, Problem> {
-        let task = self.held(lease).await?;
+        let task = self.leased_task(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
         ensure(task.submission.artifact.digest == *digest || suite, Problem::not_found("artifact of this job"))?;
         Ok(self.app.0.store.open(digest).await?)
@@ -190,7 +190,7 @@ impl Remote {
     /// # Errors
     /// When the job is not its own (any more), or the store fails.
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
-        self.held(lease).await?;
+        self.leased_task(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
         // A request that takes the job away meanwhile waits for this one, or this one finds that the job was taken.
@@ -211,7 +211,7 @@ impl Remote {
     /// # Errors
     /// When it does not.
     pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
-        self.held(lease).await.map(|_| MAX_FILE)
+        self.leased_task(lease).await.map(|_| MAX_FILE)
     }
 }
 

@@ -113,7 +113,7 @@ impl Staff {
         let was_published = before.as_ref().is_some_and(|before| before.published_at.is_some());
         let visible = change.visible.or(before.as_ref().map(|before| before.visible)).unwrap_or_default();
         let before = before.as_ref().map(|before| before.settings.clone()).unwrap_or_default();
-        let settings = settings(&before)?.checked(&self.app.suites)?;
+        let settings = settings(&before)?.validate(&self.app.suites)?;
         if let Some(NewSuite { digest, name, .. }) = change.suite {
             let statement = "INSERT INTO suite (course, digest, name, uploaded_at) VALUES (?, ?, ?, {now})
                 ON CONFLICT (course, digest) DO UPDATE SET name = excluded.name, uploaded_at = excluded.uploaded_at";

@@ -97,7 +97,7 @@ impl Staff {
     pub async fn regrade(&self, slug: &str, reason: &str, settings: &Settings) -> Result<Regrade, Problem> {
         crate::domain::accounts::identity::check_title("a reason", reason)?;
         let assignment = self.assignment(slug).await?;
-        let settings = settings.checked(&self.app.suites)?;
+        let settings = settings.validate(&self.app.suites)?;
         let mut transaction = self.begin().await?;
         self.check_suite(&mut transaction, &settings).await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;

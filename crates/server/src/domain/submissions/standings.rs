@@ -166,7 +166,7 @@ impl Best {
         attempts.sort_unstable();
         let value = |points: &Option<String>| points.as_ref().and_then(|points| points.parse::<f64>().ok());
         attempts.into_iter().fold(None, |best: Option<Self>, (id, came_at, points)| {
-            let late = policy.late(own_due, came_at);
+            let late = policy.lateness(own_due, came_at);
             let is_late = late.is_some();
             let left = || late.map_or(points.to_owned(), |late| late.left_of(points));
             let graded = (points != "-").then(|| by_hand.get(&id).cloned().unwrap_or_else(left));

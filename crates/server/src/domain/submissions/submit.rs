@@ -59,7 +59,7 @@ impl Member {
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
-            let (taken, found) = (assignment.settings.taken(), upload.form.describe());
+            let (taken, found) = (assignment.settings.describe_forms(), upload.form.describe());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
         // Simultaneous uploads of an account are checked one after another, so that nothing is stored of an upload for

@@ -8,7 +8,7 @@ use crate::{
     domain::{History, KeptResult, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
-    task::rounded,
+    task::round_points,
 };
 use axum::{
     Json,
@@ -68,7 +68,7 @@ pub(in crate::web) async fn receive(
     let most = settings.max_bytes;
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
     // A form does not show yet whether it was sent before.
-    let announced = (!upload::is_form(&request)).then(|| (key, upload::announced(&request).unwrap_or(0)));
+    let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
     let came_at = match member.check_announced(assignment, announced, since).await {
         Ok(came_at) => came_at,
         Err(problem) => return Err(upload::refuse(&member.app, request, most, problem).await),
@@ -184,7 +184,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
         let parts = grade.and_then(|grade| Some(&kept.get(&grade.result)?.parts));
         let of_group = |name: &&str| {
             let found = parts?.groups.iter().find(|(group, _)| group == name)?;
-            found.1.map(|points| rounded(&points.to_string()))
+            found.1.map(round_points)
         };
         let of_groups = groups.iter().map(|group| of_group(group).unwrap_or_default());
         let row = [

@@ -57,7 +57,7 @@ pub(super) struct NewAccount {
 async fn make(admin: &Admin, end: &str, look: People, link: Option<String>, token: Option<String>) -> Page {
     let part = PARTS.into_iter().find(|part| part.0 == end).unwrap_or(PARTS[0]);
     let frame =
-        PageFrame::for_account(&admin.account).then("/admin".to_owned(), "Administration").beside("/admin", &PARTS);
+        PageFrame::for_account(&admin.account).then("/admin".to_owned(), "Administration").with_pages("/admin", &PARTS);
     let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
     let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
     show(&AdminPage {

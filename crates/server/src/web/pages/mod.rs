@@ -188,7 +188,7 @@ impl PageFrame {
         let place = format!("/c/{}", member.slug);
         let frame = Self::for_account(&member.account).then(place.clone(), &member.title);
         let pages = [("", "Assignments"), ("/members", "Members"), ("/queue", "Queue"), ("/audit", "Audit log")];
-        if member.is_staff { frame.beside(&place, &pages) } else { frame }
+        if member.is_staff { frame.with_pages(&place, &pages) } else { frame }
     }
 
     /// Returns the place at an assignment of a course.
@@ -197,13 +197,13 @@ impl PageFrame {
         let pages = [("/class", "Class"), ("", "Hand in"), ("/settings", "Settings")];
         let frame = Self::course(member);
         match member.is_staff {
-            true => frame.then(format!("{place}/class"), &assignment.title).beside(&place, &pages),
+            true => frame.then(format!("{place}/class"), &assignment.title).with_pages(&place, &pages),
             false => frame.then(place, &assignment.title),
         }
     }
 
     /// Sets the pages about the thing at an address, by what their own addresses have behind it.
-    fn beside(mut self, place: &str, pages: &[(&str, &'static str)]) -> Self {
+    fn with_pages(mut self, place: &str, pages: &[(&str, &'static str)]) -> Self {
         self.tabs = pages.iter().map(|(end, title)| (format!("{place}{end}"), *title)).collect();
         self
     }

@@ -44,8 +44,8 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
     }
     let is_named = settings.suite_archive.is_none();
     let known = &staff.app.suites;
-    let other = Some((settings.suite.as_str(), "")).filter(|(suite, _)| known.listed().all(|(name, _)| name != *suite));
-    for (name, title) in known.listed().chain(other) {
+    let other = Some((settings.suite.as_str(), "")).filter(|(suite, _)| known.titles().all(|(name, _)| name != *suite));
+    for (name, title) in known.titles().chain(other) {
         let words = match (name, title) {
             ("", _) => "the grader's default".to_owned(),
             (name, "") => name.to_owned(),
@@ -67,7 +67,7 @@ pub(super) struct Grading {
     seconds: String,
 }
 
-fn parsed<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
+fn parse<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
     text.trim().parse().map_err(|_| Problem::invalid(format!("{what} must not be {text:?}")))
 }
 
@@ -85,7 +85,7 @@ impl Grading {
             rules: chosen(&self.rules),
             hints: chosen(&self.hints),
             program: self.program.trim().to_owned(),
-            seconds: parsed("seconds", &self.seconds)?,
+            seconds: parse("seconds", &self.seconds)?,
             ..before.clone()
         })
     }
@@ -118,21 +118,21 @@ pub(super) struct NewSettings {
 
 impl NewSettings {
     fn over(&self, before: &Settings) -> Result<Settings, Problem> {
-        let megabytes: f64 = parsed("the largest upload", &self.megabytes)?;
+        let megabytes: f64 = parse("the largest upload", &self.megabytes)?;
         ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload must be at most 1024 MiB"))?;
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
         Ok(Settings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
             // At most a gigabyte, so that nothing is lost.
             max_bytes: (megabytes * MIB).round() as u64,
-            attempts: parsed("attempts", &self.attempts)?,
-            per_hour: parsed("submissions in an hour", &self.per_hour)?,
-            late_days: parsed("late days", &self.late_days)?,
-            late_percent: parsed("the late penalty", &self.late_percent)?,
+            attempts: parse("attempts", &self.attempts)?,
+            per_hour: parse("submissions in an hour", &self.per_hour)?,
+            late_days: parse("late days", &self.late_days)?,
+            late_percent: parse("the late penalty", &self.late_percent)?,
             due_at: moment(&self.due, &self.due_zone, before.due_at)?,
             time_zone: match self.time_zone.trim() {
                 "" => None,
-                name => Some(parsed("the time zone, such as Europe/Berlin,", name)?),
+                name => Some(parse("the time zone, such as Europe/Berlin,", name)?),
             },
             ..self.grading.over(before)?
         })
@@ -144,7 +144,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
     if field.trim().is_empty() {
         return Ok(None);
     }
-    let east = if zone.is_empty() { 0 } else { parsed("the time zone", zone)? };
+    let east = if zone.is_empty() { 0 } else { parse("the time zone", zone)? };
     let at = calendar::read_field(field.trim(), east);
     let at = at.ok_or_else(|| Problem::invalid(format!("{field:?} must be a date and time")))?;
     let same = before.filter(|before| before.div_euclid(60_000) == at.div_euclid(60_000));

@@ -1,7 +1,7 @@
 //! The results of a class in numbers, and the students in each part of it.
 use crate::{
     domain::{CountedSubmission, ShortStanding},
-    task::rounded,
+    task::round_points,
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
@@ -66,14 +66,13 @@ impl Statistics {
         let ran = standings.iter().filter(|one| !is_in(one, "never-ran"));
         let mut shares: Vec<f64> = ran.filter_map(|one| share(one.counts.as_ref()?)).collect();
         shares.sort_by(f64::total_cmp);
-        let number = |share: f64| rounded(&share.to_string());
         let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
         let mean = |count: usize| shares.iter().sum::<f64>() / count as f64;
         let points = Some(shares.len()).filter(|count| *count > 0);
         Self {
             students: standings.len(),
             parts: PARTS.map(|(name, words)| (name, words, count(name))).to_vec(),
-            points: points.map(|count| (number(mean(count)), number(middle(count)))),
+            points: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
             bars: histogram::html(shares.iter().map(|share| share / 100.0)),
             mistakes: find_shared(standings, mistake),
             same: find_shared(standings, |counts| Some(counts.digest.as_str()).filter(|digest| !digest.is_empty()))

@@ -3,7 +3,7 @@ use crate::{
     calendar,
     domain::{RegradeState, Submission},
     problem,
-    task::rounded,
+    task::round_points,
 };
 
 /// Returns a moment, as markup: in UTC, which a script makes the reader's own time.
@@ -20,15 +20,15 @@ pub(super) fn field(milliseconds: &Option<i64>) -> String {
 /// Returns the points of the most that could be had, to two digits as in reports; a dash where there are none.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
-        (Some(points), Some(most)) => format!("{} of {}", rounded(points), rounded(most)),
-        (Some(points), None) => rounded(points),
+        (Some(points), Some(most)) => format!("{} of {}", round_points(points), round_points(most)),
+        (Some(points), None) => round_points(points),
         _ => "\u{2013}".to_owned(),
     }
 }
 
 /// Formats points alone.
 pub(super) fn bare_points(points: &Option<String>) -> String {
-    points.as_deref().map(rounded).unwrap_or_default()
+    points.as_deref().map(round_points).unwrap_or_default()
 }
 
 /// Describes the state of a regrade.
@@ -43,7 +43,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
 /// Describes a score for a learning platform.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
-        (Some(points), Some(most)) => format!("{} / {}", rounded(&points.to_string()), rounded(&most.to_string())),
+        (Some(points), Some(most)) => format!("{} / {}", round_points(points), round_points(most)),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
         _ => "staff must look at it".to_owned(),
     }
