@@ -85,7 +85,7 @@ pub(super) fn width() -> Option<usize> {
 /// As [`print`].
 pub(super) fn report(text: &str) -> Result<()> {
     match width() {
-        Some(width) => print(wrap::wrapped(text, width)),
+        Some(width) => print(wrap::wrap(text, width)),
         None => print(text),
     }
 }

@@ -21,7 +21,7 @@ use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 #[must_use]
 pub fn main() -> ExitCode {
     // A copy to which a mistake is pinned is a submission, and nothing else.
-    if let Some(mistake) = sample::pin::pinned() {
+    if let Some(mistake) = sample::pin::pinned_mistake() {
         return sample::main(std::env::args_os(), Some(mistake));
     }
     // Before all other commands, since this is called most often and is over soonest.

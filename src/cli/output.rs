@@ -95,7 +95,7 @@ impl Output {
     /// Returns the place of a file's bytes before it appears under its name, for a program that writes them.
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
-            Self::File(file) => Some(file.unfinished()),
+            Self::File(file) => Some(file.unfinished_path()),
             Self::Nowhere | Self::Stdout | Self::Device(..) => None,
         }
     }
@@ -228,14 +228,14 @@ fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacem
     show_activity();
     let mut pending = pending();
     let file = begin()?;
-    pending.push(file.unfinished());
+    pending.push(file.unfinished_path());
     Ok(file)
 }
 
 /// Lets a file appear under its name.
 fn finish_file(file: Replacement) -> io::Result<()> {
     let mut pending = pending();
-    let path = file.unfinished();
+    let path = file.unfinished_path();
     let finished = file.finish();
     pending.retain(|waiting| *waiting != path);
     show_activity();
@@ -272,7 +272,7 @@ impl Folder {
 
     /// Returns the output's name as typed, fit for printing.
     pub(super) fn name(&self) -> String {
-        self.0.shown().display().to_string()
+        self.0.given_path().display().to_string()
     }
 
     /// Returns whether there is a file of this name.
@@ -286,7 +286,7 @@ impl Folder {
     /// When it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
         find_replaced(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
-            .with_context(|| format!("cannot write {}", self.0.shown().join(name).display()))
+            .with_context(|| format!("cannot write {}", self.0.given_path().join(name).display()))
     }
 }
 

@@ -21,7 +21,7 @@ static PINNED: Place = empty();
 
 /// Returns the mistake that is pinned to this program, if one is.
 #[must_use]
-pub fn pinned() -> Option<&'static str> {
+pub fn pinned_mistake() -> Option<&'static str> {
     read(&PINNED)
 }
 

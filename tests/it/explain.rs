@@ -6,7 +6,7 @@ use super::{
     workspace::Workspace,
 };
 use fosssim_oracle::{
-    diagnose::{ExamplePlace, Explanation, explain, formula_in, known, several},
+    diagnose::{ExamplePlace, Explanation, explain, find_known, formula_in, several},
     judge::{fair::FairVerdict, replay},
     scene::{Scene, original},
     sim::PairKind,
@@ -51,7 +51,7 @@ fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
         let Some(trace) = simulated(scene, Some(row)) else { continue };
         let fair = replay::judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
         if fair.verdict == FairVerdict::Rejected {
-            found.push(if found.len() < 2 { explain(scene, &trace) } else { known(scene, &trace[..]) });
+            found.push(if found.len() < 2 { explain(scene, &trace) } else { find_known(scene, &trace[..]) });
         }
     }
     found

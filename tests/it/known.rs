@@ -1,6 +1,6 @@
 //! Known mistakes are recognized on the built-in scenes. `scripts/explanation-matrix` measures it on all of them.
 use fosssim_oracle::{
-    diagnose::known,
+    diagnose::find_known,
     scene::{Scene, original},
     student::{self, CATALOGUE, RowKind, Student},
     suite::library,
@@ -54,7 +54,7 @@ fn most_mistakes_are_named_on_their_best_scene() {
                 if trace == *correct {
                     return Recognized::Unseen;
                 }
-                match known(scene, &trace[..]).into_iter().next() {
+                match find_known(scene, &trace[..]).into_iter().next() {
                     None => Recognized::Unseen,
                     Some(explanation) if explanation.key == row.id => Recognized::First,
                     Some(explanation) if explanation.same_as.iter().any(|id| id == row.id) => Recognized::Among,
@@ -79,7 +79,7 @@ fn no_correct_variant_is_accused() {
         .flat_map_iter(|(name, scene, _)| {
             CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).filter_map(move |row| {
                 let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
-                let first = known(scene, &trace[..]).into_iter().next()?;
+                let first = find_known(scene, &trace[..]).into_iter().next()?;
                 Some(format!("{} on {name}: {}", row.id, first.key))
             })
         })
@@ -97,7 +97,7 @@ fn a_right_approach_hides_no_mistake() {
         student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
     };
     let correct = trace(None);
-    assert_eq!(known(scene, &correct[..]), []);
+    assert_eq!(find_known(scene, &correct[..]), []);
     let rows = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && !row.id.starts_with("pe-approach"));
     let mut seen = 0;
     let mut unnamed = Vec::new();
@@ -105,7 +105,7 @@ fn a_right_approach_hides_no_mistake() {
         let trace = trace(Some(row.mistake));
         if trace != correct {
             seen += 1;
-            let first = known(scene, &trace[..]).into_iter().next();
+            let first = find_known(scene, &trace[..]).into_iter().next();
             if !first.is_some_and(|first| first.key == row.id || first.same_as.contains(&row.id.to_owned())) {
                 unnamed.push(row.id);
             }

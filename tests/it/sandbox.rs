@@ -412,7 +412,7 @@ fn a_build_step_compiles_a_program_in_the_sandbox() {
 fn without_the_required_walls_the_limits_and_all_other_walls_still_hold() {
     let Some(best) = backend() else { return };
     let bench_folder = tempfile::tempdir().unwrap();
-    let backend = Backend::unsandboxed(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle"))).unwrap();
+    let backend = Backend::without_sandbox(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle"))).unwrap();
     assert!(backend.is_complete() && backend.weaknesses().is_empty(), "this host lacks nothing");
     assert_eq!(backend.layers(), best.layers(), "no wall that holds is left out");
     let job = Job::new("/usr/bin/id", bench_folder.path()).arguments(["-u"]);
@@ -507,7 +507,7 @@ fn a_staged_program_that_is_gone_or_changed_is_our_fault() {
     use fosssim_oracle::sandbox::ProgramIdentity;
     let Some(bench) = Bench::new() else { return };
     let program = bench.script("#!/bin/sh\nexit 0\n");
-    let job = bench.job(&program, &[]).staged(ProgramIdentity::from_path(&program));
+    let job = bench.job(&program, &[]).with_identity(ProgramIdentity::from_path(&program));
     assert_eq!(bench.finish(&job).ended, RunEnd::Exited(0));
     std::fs::write(&program, "#!/bin/sh\nexit 1\n").unwrap();
     let changed = bench.backend.start(&job).unwrap_err();

@@ -1,6 +1,6 @@
 //! `check`: the same reports as the command's.
 use crate::{
-    dropped::{PageHost, ReadFault, ToldProgress, opened},
+    dropped::{PageHost, ReadFault, ToldProgress, open},
     parts::PageAnswer,
     scenes,
 };
@@ -39,7 +39,7 @@ pub(crate) struct CheckRequest {
 pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn PageHost) -> PageAnswer {
     let scene = read_scene(&request.scene, xml)?;
     let fault = ReadFault::new();
-    let (mut trace, mut start) = (opened(host, request.file, &fault), Vec::new());
+    let (mut trace, mut start) = (open(host, request.file, &fault), Vec::new());
     // Bytes that can't be read are noticed below.
     let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = looks_like(&start);
@@ -70,12 +70,12 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     };
     let mut parts = vec![check.json().into_bytes()];
     if request.html {
-        let mut again = (!examined.trace.is_whole()).then(|| opened(host, request.file, &fault));
+        let mut again = (!examined.trace.is_whole()).then(|| open(host, request.file, &fault));
         let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::BUDGET);
         parts.push(page::examined_page(check, &examined, &evidence).into_bytes());
     }
     let value = json!({
-        "accepted": check.accepted(), "verdict": check.verdict(), "difference": check.difference(),
+        "accepted": check.is_accepted(), "verdict": check.verdict(), "difference": check.difference(),
     });
     Ok((value, parts))
 }

@@ -4,7 +4,7 @@
 //! module, and a worker that the page makes itself; no address is among the sources.
 use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
-use fosssim_report::page::{ELEMENTS, digest, framed, style};
+use fosssim_report::page::{ELEMENTS, digest, framed_digests, style};
 use miniz_oxide::deflate::compress_to_vec;
 
 /// The page's script, in the order in which its parts need each other.
@@ -29,7 +29,7 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT));
     let worker = lines(&WORKER);
     let style = style() + STYLE;
-    let [framed_script, framed_style] = framed();
+    let [framed_script, framed_style] = framed_digests();
     let policy = format!(
         "default-src 'none'; script-src '{}' {framed_script} 'wasm-unsafe-eval'; worker-src blob:; \
          style-src '{}' {framed_style}; img-src blob: data:; media-src blob:; base-uri 'none'; form-action 'none'",

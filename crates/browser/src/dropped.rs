@@ -39,7 +39,7 @@ impl Progress for ToldProgress<'_> {
 }
 
 /// Returns a dropped trace from its beginning, unpacked where it is a zstd file.
-pub(crate) fn opened<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
+pub(crate) fn open<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
     let mut bytes = BufReader::with_capacity(PIECE, DroppedFile { host, file, offset: 0, fault });
     // A file that can't be read is noticed when it is read.
     match bytes.fill_buf() {
@@ -140,7 +140,7 @@ mod tests {
 
     fn content(bytes: Vec<u8>) -> (Vec<u8>, Option<&'static str>) {
         let (fault, host, mut content) = (ReadFault::new(), Bytes(bytes), Vec::new());
-        let _ = opened(&host, 0, &fault).read_to_end(&mut content);
+        let _ = open(&host, 0, &fault).read_to_end(&mut content);
         (content, fault.get().copied())
     }
 

@@ -203,7 +203,7 @@ impl Film {
             if let Err(error) = simulation.step(&mut recorder) {
                 return Err(format!("there is no trace: {}", no_result(&error)));
             }
-            if recorder.failed() {
+            if recorder.has_failed() {
                 break;
             }
             if step % NEWS == 0 {

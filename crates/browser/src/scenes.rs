@@ -1,6 +1,6 @@
 //! The scenes that are inside.
 use crate::{
-    dropped::{PageHost, ReadFault, opened},
+    dropped::{PageHost, ReadFault, open},
     parts::PageAnswer,
 };
 use fosssim_grading::{library, near};
@@ -44,7 +44,7 @@ pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
 pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // An error has its words in `fault`.
-    let _ = opened(host, file, &fault).take(LONGEST_RECORD).read_to_end(&mut start);
+    let _ = open(host, file, &fault).take(LONGEST_RECORD).read_to_end(&mut start);
     if let Some(why) = fault.get() {
         return Err(format!("cannot read the trace: {why}"));
     }

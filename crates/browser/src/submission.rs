@@ -1,6 +1,6 @@
 //! A submission's traces: points by a suite, as `grade --traces` gives them.
 use crate::{
-    dropped::{PageHost, ReadFault, ToldProgress, opened},
+    dropped::{PageHost, ReadFault, ToldProgress, open},
     parts::PageAnswer,
 };
 use fosssim_grading::{
@@ -81,11 +81,11 @@ impl DroppedSubmission {
         let task = self.plan.scenes().nth(asked.number).ok_or("there is no such scene")?;
         let fault = ReadFault::new();
         let trace: Box<dyn Read + Send> = match asked.has_trace {
-            true => Box::new(opened(host, 0, &fault).take(self.plan.limits.trace)),
+            true => Box::new(open(host, 0, &fault).take(self.plan.limits.trace)),
             false => Box::new(empty()),
         };
         let mut heard = ToldProgress { host, all: task.scene.steps() };
-        let (mut result, _) = traces::judged(&self.plan, task, trace, &mut heard);
+        let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut heard);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));
         }
@@ -109,10 +109,10 @@ impl DroppedSubmission {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
-        let points = |reached, most| json!({ "points": grade::reached(reached), "of": grade::points(most) });
+        let points = |points, most| json!({ "points": grade::format_points(points), "of": grade::points(most) });
         let scene = |scene: &SceneGrade| -> Value {
-            let likely = scene.settled.first().map(explanation::what);
-            json!({ "points": grade::reached(scene.points), "of": grade::points(scene.max_points), "likely": likely })
+            let (points, most) = (grade::format_points(scene.points), grade::points(scene.max_points));
+            json!({ "points": points, "of": most, "likely": scene.settled.first().map(explanation::what) })
         };
         let scenes: Vec<Value> = graded.scenes().map(scene).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
@@ -129,7 +129,7 @@ impl DroppedSubmission {
             .collect();
         let value = json!({
             "causes": causes,
-            "points": grade::reached(graded.points),
+            "points": grade::format_points(graded.points),
             "of": grade::points(graded.max_points),
             "verdict": graded.verdict.name(),
             "unfit": words::describe_unfit(&graded),

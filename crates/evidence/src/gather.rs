@@ -301,7 +301,7 @@ struct MidState {
 }
 
 impl Observer for MidState {
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         self.state = Some(state.clone());
     }
 }

@@ -392,7 +392,7 @@ impl Observer for Inspector<'_> {
         Some(self)
     }
 
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         self.step.expected_mid = Some(state.clone());
     }
 

@@ -66,7 +66,7 @@ impl FileError {
 }
 
 /// Returns a name as messages show it.
-pub(crate) fn escaped(name: &OsStr) -> String {
+pub(crate) fn escape(name: &OsStr) -> String {
     name.to_string_lossy().escape_debug().to_string()
 }
 

@@ -1,7 +1,7 @@
 //! Files beneath a folder that others may have filled, or fill meanwhile.
 use super::{
     Identity,
-    error::{FileError, escaped, regular},
+    error::{FileError, escape, regular},
 };
 use rustix::{
     fs::{AtFlags, CWD, Dir, FileType, Mode, OFlags, mkdirat, openat, statat, unlinkat},
@@ -81,7 +81,7 @@ impl Folder {
 
     /// Returns the name under which it was opened.
     #[must_use]
-    pub fn shown(&self) -> &Path {
+    pub fn given_path(&self) -> &Path {
         &self.shown
     }
 
@@ -149,7 +149,7 @@ impl Folder {
     /// # Errors
     /// When it is missing, not a regular file, reached through a link, or longer than `max_bytes`.
     pub fn file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
-        let shown = || escaped(name);
+        let shown = || escape(name);
         let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
         let length = regular(&file, shown)?.len();
         if length > max_bytes {
@@ -164,9 +164,9 @@ impl Folder {
     /// As for [`Folder::file`], and when it has a second name.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
         let (file, length) = self.file(OsStr::new(name), max_bytes)?;
-        let links = regular(&file, || escaped(OsStr::new(name)))?.nlink();
+        let links = regular(&file, || escape(OsStr::new(name)))?.nlink();
         if links != 1 {
-            return Err(FileError::Linked { name: escaped(OsStr::new(name)), links });
+            return Err(FileError::Linked { name: escape(OsStr::new(name)), links });
         }
         Ok((file, length))
     }
@@ -180,9 +180,9 @@ impl Folder {
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default() + 1);
         file.take(max_bytes + 1)
             .read_to_end(&mut bytes)
-            .map_err(|source| FileError::System { name: escaped(name), source })?;
+            .map_err(|source| FileError::System { name: escape(name), source })?;
         match bytes.len() as u64 {
-            length if length > max_bytes => Err(FileError::TooLong { name: escaped(name), length, limit: max_bytes }),
+            length if length > max_bytes => Err(FileError::TooLong { name: escape(name), length, limit: max_bytes }),
             _ => Ok(bytes),
         }
     }
@@ -238,7 +238,7 @@ impl Folder {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
             Ok(self.inner(step(above.as_fd(), last)?, path.as_os_str()))
         };
-        open().map_err(|error| FileError::not_opened(escaped(path.as_os_str()), error))
+        open().map_err(|error| FileError::not_opened(escape(path.as_os_str()), error))
     }
 
     fn inner(&self, fd: OwnedFd, name: &OsStr) -> Self {
@@ -306,7 +306,7 @@ pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
 /// # Errors
 /// When it is missing, not a regular file, or closed to us.
 pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
-    let shown = || escaped(path.as_os_str());
+    let shown = || escape(path.as_os_str());
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | no_link).open(path);
     let file = file.map_err(|error| FileError::not_opened(shown(), error))?;

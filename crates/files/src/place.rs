@@ -1,5 +1,5 @@
 //! Places in a folder of results: a user named the folder, and we named everything below it.
-use super::{FileError, Folder, Replacement, error::escaped};
+use super::{FileError, Folder, Replacement, error::escape};
 use std::{
     ffi::OsStr,
     fs::File,
@@ -63,7 +63,7 @@ impl Place {
     pub fn make_folder(&self) -> io::Result<Folder> {
         self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
             let inner = folder.make_folder(name);
-            inner.map_err(|error| named(&folder.shown().join(name), &error))
+            inner.map_err(|error| with_name(&folder.given_path().join(name), &error))
         })
     }
 
@@ -124,10 +124,10 @@ impl Place {
     }
 
     fn base(&self) -> Result<Folder, FileError> {
-        Folder::to_write(self.start()).map_err(|error| FileError::not_opened(escaped(self.folder.as_os_str()), error))
+        Folder::to_write(self.start()).map_err(|error| FileError::not_opened(escape(self.folder.as_os_str()), error))
     }
 }
 
-fn named(path: &Path, error: &io::Error) -> io::Error {
-    io::Error::new(error.kind(), format!("{}: {error}", escaped(OsStr::new(path))))
+fn with_name(path: &Path, error: &io::Error) -> io::Error {
+    io::Error::new(error.kind(), format!("{}: {error}", escape(OsStr::new(path))))
 }

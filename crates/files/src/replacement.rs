@@ -61,14 +61,14 @@ impl Replacement {
 
     /// Returns the place of the bytes before the file is finished, with the folder's path from when it was opened.
     #[must_use]
-    pub fn unfinished(&self) -> PathBuf {
-        self.folder.shown().join(&self.unfinished)
+    pub fn unfinished_path(&self) -> PathBuf {
+        self.folder.given_path().join(&self.unfinished)
     }
 
     /// Returns where the file will be.
     #[must_use]
     pub fn target(&self) -> PathBuf {
-        self.folder.shown().join(&self.name)
+        self.folder.given_path().join(&self.name)
     }
 
     /// Lets the file appear under its name. A file of that name is replaced; a link is, too, and not the file to which

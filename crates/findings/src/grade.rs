@@ -160,7 +160,7 @@ impl Grade {
 
     /// Returns the grade with its hidden groups published.
     #[must_use]
-    pub fn published(&self) -> Self {
+    pub fn with_hidden_published(&self) -> Self {
         let mut published = self.clone();
         published.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
         published

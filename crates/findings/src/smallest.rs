@@ -56,7 +56,7 @@ impl SmallestScene {
     /// Returns whether none of these has the same scene, or shows the same cause.
     #[must_use]
     pub fn is_new(&self, found: &[Self]) -> bool {
-        let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::said);
+        let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::statement);
         found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
     }
 

@@ -163,7 +163,7 @@ impl Display for VectorDifference {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let least = power(size).map(|power| 5 - power);
             let places = power(distance).map(|power| 1 - power).max(least).unwrap_or(0);
-            VectorWords(vector.map(|value| rounded(value, places, power(value))))
+            VectorWords(vector.map(|value| cut_to_places(value, places, power(value))))
         };
         write!(f, "{}, expected {}, distance ", short([ax, ay]), short([ex, ey]))?;
         let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
@@ -172,7 +172,7 @@ impl Display for VectorDifference {
 }
 
 /// Returns a value cut to a number of places behind the point; before it, where the number is negative.
-fn rounded(value: f64, places: i32, power: Option<i32>) -> f64 {
+fn cut_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     // More than seventeen digits add nothing.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
     let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {

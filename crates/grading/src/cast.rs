@@ -182,7 +182,7 @@ impl Stage {
         self.grade_by(&small_plan(), names)
     }
 
-    pub(super) fn started(&self) -> usize {
+    pub(super) fn started_count(&self) -> usize {
         self.starts.lock().expect("lock").len()
     }
 }

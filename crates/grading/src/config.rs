@@ -212,7 +212,7 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
 
 /// Reads a suite and all its faults, in order; a faulty part is left out or has its default.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
-    let (table, mut problems, is_readable) = shape::checked(text);
+    let (table, mut problems, is_readable) = shape::check_shape(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
         problems.push((error.span().unwrap_or(0..0), error.message().trim().replace('\n', " ")));
         RawSuite::default()
@@ -253,7 +253,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     }
     let suite = Suite {
         name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
-        milestone: raw.milestone.as_deref().and_then(Assignment::named),
+        milestone: raw.milestone.as_deref().and_then(Assignment::from_key),
         run,
         rules: raw.rules.unwrap_or(Rules::Fair),
         staff_hints: Hints::Full,

@@ -81,7 +81,7 @@ impl Runner<'_> {
             match self.attempt(program, task, on_step) {
                 Ok(result) => return result,
                 Err(_) if attempt < ATTEMPTS => attempt += 1,
-                Err(words) => return task.failed(Failure::Machine(words)),
+                Err(words) => return task.failure_result(Failure::Machine(words)),
             }
         }
     }
@@ -210,7 +210,7 @@ impl Runner<'_> {
             .policy(Policy::Submission)
             .folder_in_memory()
             .sanitizers(self.limits.sanitizers)
-            .staged(identity)
+            .with_identity(identity)
             .limits(self.sandbox_limits());
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }

@@ -17,7 +17,7 @@ pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &
         Ok(path) => SavedTrace::In(path),
         Err(error) => SavedTrace::Lost { folder: folder.path(), error: error.to_string() },
     };
-    task.failed(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) })
+    task.failure_result(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) })
 }
 
 /// Writes a trace into the folder under the name of its scene and its own digest.

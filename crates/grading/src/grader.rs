@@ -296,7 +296,11 @@ impl<'a> SubmissionGrading<'a> {
     /// also the grade.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
-            FinishedScene::unkept(scene.failed(Failure::Panic { stage: None, fault: fault.to_string(), trace: None }))
+            FinishedScene::unkept(scene.failure_result(Failure::Panic {
+                stage: None,
+                fault: fault.to_string(),
+                trace: None,
+            }))
         });
         let FinishedScene { result, cached, claim } = done;
         self.note(number, &result);
@@ -334,8 +338,8 @@ impl<'a> SubmissionGrading<'a> {
             Ok(claim) => claim,
             Err(done) => return *done,
         };
-        match &*self.staged() {
-            Err(message) => FinishedScene::unkept(scene.failed(Failure::Machine(message.clone()))),
+        match &*self.staged_program() {
+            Err(message) => FinishedScene::unkept(scene.failure_result(Failure::Machine(message.clone()))),
             Ok(StagedProgram { refused: Some(why), .. }) => {
                 without_run(Verdict::Unusable, Reason::Unusable(why.clone()))
             }
@@ -427,7 +431,7 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     /// Returns the staged submission; the first job stages it, the others wait.
-    pub(super) fn staged(&self) -> Arc<Result<StagedProgram, String>> {
+    pub(super) fn staged_program(&self) -> Arc<Result<StagedProgram, String>> {
         lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage())).clone()
     }
 

@@ -79,7 +79,7 @@ pub fn assignment(name: &str) -> Option<Assignment> {
         return Some(MADE_OF);
     }
     let path = file(&ASSETS, &format!("{name}.xml"))?.path();
-    Assignment::named(path.components().next()?.as_os_str().to_str()?)
+    Assignment::from_key(path.components().next()?.as_os_str().to_str()?)
 }
 
 /// Returns whether a pattern includes a scene of this name. A pattern that begins with an assignment's folder, such as
@@ -146,7 +146,7 @@ mod tests {
         for root in [&ASSETS, &REFERENCES] {
             for folder in root.dirs() {
                 let key = folder.path().to_str().expect("UTF-8");
-                assert!(Assignment::named(key).is_some(), "{key} is no assignment's key");
+                assert!(Assignment::from_key(key).is_some(), "{key} is no assignment's key");
             }
         }
         let all: Vec<&str> = names().collect();
@@ -172,7 +172,7 @@ mod tests {
             let pattern = Pattern::new(pattern).expect("a pattern");
             names().filter(|name| takes(&pattern, name)).collect::<Vec<_>>()
         };
-        let of = |key: &str| names().filter(|name| assignment(name) == Assignment::named(key)).collect::<Vec<_>>();
+        let of = |key: &str| names().filter(|name| assignment(name) == Assignment::from_key(key)).collect::<Vec<_>>();
         assert_eq!(taken("t2m2/*"), taken("t2m2@2/*"), "the newest version is meant");
         assert_eq!(taken("t2m1/*"), of("t2m1"));
         assert_eq!(taken("*").len(), names().count());

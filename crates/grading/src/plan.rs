@@ -98,7 +98,7 @@ pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 
 /// Looks up the scenes of a suite; `files` looks up patterns that do not name scenes of this program. Patterns that
 /// match nothing, and scenes that can't be read or are not sound, are reported at the pattern's position.
-fn resolved(
+fn resolve(
     suite: Suite,
     files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
     problems: &mut Vec<(Position, String)>,
@@ -161,7 +161,7 @@ fn resolved(
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
     // Patterns are looked up even after other faults: all faults are reported together.
-    let plan = resolved(suite, files, &mut problems);
+    let plan = resolve(suite, files, &mut problems);
     if problems.is_empty() {
         return Ok(plan);
     }

@@ -54,7 +54,7 @@ impl Recipe<'_> {
             },
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(StagedProgram::refused(path, why))
+        Ok(StagedProgram::unusable(path, why))
     }
 
     /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not ours: a link that leads
@@ -81,7 +81,7 @@ impl Recipe<'_> {
             }
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(StagedProgram::refused(&path, why))
+        Ok(StagedProgram::unusable(&path, why))
     }
 
     /// Stages the build of the sources in a folder, or in the only archive that it holds.
@@ -115,7 +115,7 @@ impl Recipe<'_> {
             Err(error @ (ArchiveError::Read(_) | ArchiveError::Folder(_))) => {
                 return Err(format!("{}: {error}", path.display()));
             }
-            Err(error) => return Ok(StagedProgram::refused(path, UnusableReason::Unreadable(error.to_string()))),
+            Err(error) => return Ok(StagedProgram::unusable(path, UnusableReason::Unreadable(error.to_string()))),
         };
         let top = fosssim_intake::top_folder(&inside, &files);
         if let Some(step) = self.build {
@@ -123,7 +123,7 @@ impl Recipe<'_> {
         }
         match open_in(&top, self.program) {
             Ok(file) => copy_program(file, &top.join(self.program)),
-            Err(_) => Ok(StagedProgram::refused(path, upload::without(self.program, &top))),
+            Err(_) => Ok(StagedProgram::unusable(path, upload::without(self.program, &top))),
         }
     }
 }

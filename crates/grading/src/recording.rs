@@ -64,7 +64,7 @@ impl Recording {
     ///
     /// # Errors
     /// When zstd fails.
-    pub fn packed(&self) -> io::Result<Vec<u8>> {
+    pub fn pack(&self) -> io::Result<Vec<u8>> {
         zstd::encode_all(&self.trace[..], COMPRESSION)
     }
 
@@ -135,10 +135,10 @@ mod tests {
     fn a_recording_agrees_with_itself() {
         let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         assert_eq!((recording.steps, recording.trace.len()), (4, 5 * 32));
-        let packed = recording.packed().unwrap();
+        let packed = recording.pack().unwrap();
         assert_eq!(recording.difference(Some(&packed), Some(recording.digests.as_bytes())), None);
         let crlf = recording.digests.replace('\n', "\r\n");
-        assert_eq!(recording.difference(recording.packed().ok().as_deref(), Some(crlf.as_bytes())), None);
+        assert_eq!(recording.difference(recording.pack().ok().as_deref(), Some(crlf.as_bytes())), None);
         assert!(manifest(&[recording]).starts_with("Group/name 4 steps 160 bytes sha256 "));
     }
 
@@ -149,7 +149,7 @@ mod tests {
         other.trace[32 * 3 + 1] ^= 1;
         let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 4 };
         other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
-        let shown = recording.difference(Some(&other.packed().unwrap()), Some(other.digests.as_bytes())).unwrap();
+        let shown = recording.difference(Some(&other.pack().unwrap()), Some(other.digests.as_bytes())).unwrap();
         assert!(shown.contains("differ from byte 97 on\n"), "{shown}");
         assert!(shown.contains("\n-3 ") && shown.contains("\n+3 ") && !shown.contains("\n-2 "), "{shown}");
     }
@@ -158,7 +158,7 @@ mod tests {
     fn a_missing_or_damaged_recording_is_said() {
         let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         assert!(recording.difference(None, None).unwrap().contains("there is no recording"));
-        let packed = recording.packed().unwrap();
+        let packed = recording.pack().unwrap();
         let shown = recording.difference(Some(&packed[..packed.len() - 3]), None).unwrap();
         assert!(shown.contains("can't be unpacked"), "{shown}");
     }

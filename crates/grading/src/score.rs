@@ -185,7 +185,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     // Bundled scenes are in their milestone's folder; for others, their contents decide.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
-    diagnose::refuted(whose, &wrong, &right)
+    diagnose::refuted_keys(whose, &wrong, &right)
 }
 
 #[cfg(target_os = "linux")]

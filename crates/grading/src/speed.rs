@@ -50,7 +50,7 @@ impl SubmissionGrading<'_> {
 
     /// Keeps a result once more, with its times.
     fn keep_timed(&self, scene: &SceneTask, result: &SceneResult) {
-        if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged()) {
+        if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged_program()) {
             let students = self.grader.plan.student_hints(&scene.name);
             let key = self.shared.key(&staged.digest, scene, &program_name(&staged.program), students);
             self.shared.keep(&key, self.submission, result);
@@ -60,7 +60,7 @@ impl SubmissionGrading<'_> {
     /// Returns the timed runs of a scene, of which the first alone begins after `end`; nothing if the grader failed or
     /// was stopped.
     fn time_scene(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
-        let (staged, reference) = (self.staged(), self.shared.reference(self.grader.reference?));
+        let (staged, reference) = (self.staged_program(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
         let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };
         let run = |program: &StagedProgram, words: &[String]| {

@@ -131,7 +131,7 @@ impl StagedProgram {
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
     }
 
-    pub(super) fn refused(path: &Path, why: UnusableReason) -> Self {
+    pub(super) fn unusable(path: &Path, why: UnusableReason) -> Self {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
 
@@ -159,7 +159,7 @@ pub(super) fn copy_program(file: File, path: &Path) -> Result<StagedProgram, Str
         Err(CopyError::Submission(why)) => UnusableReason::Unreadable(why),
         Err(CopyError::Ours(why)) => return Err(why),
     };
-    Ok(StagedProgram::refused(path, why))
+    Ok(StagedProgram::unusable(path, why))
 }
 
 /// Copies an open program under this name into a folder of its own.

@@ -27,7 +27,7 @@ impl SceneTask {
 
     /// Returns the task's result where the grader or the machine failed.
     #[must_use]
-    pub fn failed(&self, failure: Failure) -> SceneResult {
+    pub fn failure_result(&self, failure: Failure) -> SceneResult {
         self.without_run(Verdict::JudgeError, Reason::Failed(failure))
     }
 }

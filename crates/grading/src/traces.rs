@@ -17,7 +17,7 @@ use std::{
 
 /// Returns the result of one scene by a trace, as if a program had ended well after it wrote it, and what judging has
 /// seen.
-pub fn judged<'a, R: Read + Send>(
+pub fn judge_trace<'a, R: Read + Send>(
     plan: &Plan,
     task: &'a SceneTask,
     trace: R,

@@ -33,13 +33,13 @@ fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
         names: names.iter().take(NAMED).map(|name| entry(folder, name)).collect(),
         more: names.len().saturating_sub(NAMED),
         elsewhere: deeper(folder, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone())
-            .map(|path| names::shown(path.as_os_str())),
+            .map(|path| names::printable(path.as_os_str())),
     }
 }
 
 fn entry(folder: &OpenFolder, name: &OsStr) -> String {
     let slash = if matches!(folder.entry(name), Ok(FolderEntry::Folder(_))) { "/" } else { "" };
-    names::shown(name) + slash
+    names::printable(name) + slash
 }
 
 /// Returns the path of a file of this name beneath a folder, the shallowest of each folder first.

@@ -44,7 +44,7 @@ impl FileKind {
 
 /// Describes a file that begins with these bytes, for a message about it.
 #[must_use]
-pub fn described(start: &[u8]) -> String {
+pub fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 17] = [
         (b"MZ", "a program for Windows"),
         (b"\xcf\xfa\xed\xfe", "a program for macOS"),

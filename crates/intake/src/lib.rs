@@ -15,7 +15,7 @@
 mod kinds;
 mod meter;
 
-pub use kinds::{ArchiveKind, FileKind, KNOWN, START, described};
+pub use kinds::{ArchiveKind, FileKind, KNOWN, START, describe};
 
 use flate2::read::GzDecoder;
 use meter::Meter;
@@ -212,7 +212,7 @@ impl Walk<'_> {
             FileKind::Archive(ArchiveKind::Zip) => self.walk_zip(file),
             FileKind::Archive(ArchiveKind::TarGz) => self.walk_tar(GzDecoder::new(BufReader::new(file))),
             FileKind::Archive(ArchiveKind::Tar) => self.walk_tar(BufReader::new(file)),
-            FileKind::Program | FileKind::Other => Err(ArchiveError::Unknown(described(&start))),
+            FileKind::Program | FileKind::Other => Err(ArchiveError::Unknown(describe(&start))),
         }
     }
 

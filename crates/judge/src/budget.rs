@@ -117,7 +117,7 @@ mod tests {
         parity::Overall,
         replay::judge_within,
         rules::{Book, Ruling},
-        samples::{changed, run, scene, written},
+        samples::{changed_trace, run, scene, write_frames},
     };
 
     /// Returns a ball that moves between two posts; where they overlap it, each round of impulses throws it from one to
@@ -135,7 +135,7 @@ mod tests {
 
     /// Returns a trace of that scene whose every step but the first begins between the posts.
     fn squeezed(scene: &Scene) -> Vec<u8> {
-        changed(scene, |frames| {
+        changed_trace(scene, |frames| {
             for frame in &mut frames[1..] {
                 frame.state.positions[..2].copy_from_slice(&[0.0, 0.0]);
                 frame.state.velocities[..2].copy_from_slice(&[1.0, 0.0]);
@@ -226,7 +226,7 @@ mod tests {
     #[test]
     fn what_the_scene_itself_takes_is_always_allowed() {
         let scene = posts(0.0, 20_000);
-        let trace = written(&scene, &run(&scene, ()));
+        let trace = write_frames(&scene, &run(&scene, ()));
         let floor = work_for_scene(&scene) / 2;
         for fair in [false, true] {
             let outcome = judged(floor, &scene, &trace, fair, 2);

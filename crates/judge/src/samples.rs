@@ -46,21 +46,21 @@ pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
 }
 
 /// Returns the bytes of these frames.
-pub(crate) fn written(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
+pub(crate) fn write_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
     frames.iter().for_each(|frame| writer.write_frame(frame));
     writer.finish().expect("written").0
 }
 
 /// Returns the reference trace with changed frames.
-pub(crate) fn changed(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
+pub(crate) fn changed_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
     let mut frames = run(scene, ());
     change(&mut frames);
-    written(scene, &frames)
+    write_frames(scene, &frames)
 }
 
 /// Returns the outcome by both books.
-pub(crate) fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
+pub(crate) fn judge_by_both(scene: &Scene, trace: &[u8]) -> Outcome {
     let options = Options { fair: true, threads: 1, ..Options::default() };
     replay::judge(scene, trace, &options, &mut ())
 }

@@ -285,7 +285,7 @@ impl Observer for Tally<'_> {
     }
 
     #[inline]
-    fn wanted(&mut self) -> WantedPairs<'_> {
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Bytes(&mut self.buffers.own)
     }
 

@@ -21,7 +21,7 @@ pub fn trace(scene: &Scene, student: Student) -> Vec<u8> {
 
 /// Returns the outcome by both rule books, on one thread, since the tools try many things at one time.
 #[must_use]
-pub fn judged(scene: &Scene, trace: &[u8]) -> Outcome {
+pub fn judge(scene: &Scene, trace: &[u8]) -> Outcome {
     replay::judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
 }
 

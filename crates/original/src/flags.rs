@@ -29,7 +29,7 @@ pub(crate) const FLAGS: [Flag; 7] = [
 const THEME_1: [usize; FLAGS.len()] = [4, 0, 1, 2, 3, 5, 6];
 
 /// Returns the flags in the order in which the usage of a program of this name lists them.
-pub(crate) fn listed(program: &[u8]) -> impl Iterator<Item = &'static Flag> {
+pub(crate) fn list_flags(program: &[u8]) -> impl Iterator<Item = &'static Flag> {
     let is_theme_1 = program.windows(NAME_1.len()).any(|part| part == NAME_1);
     (0..FLAGS.len()).map(move |place| &FLAGS[if is_theme_1 { THEME_1[place] } else { place }])
 }

@@ -178,7 +178,7 @@ fn simulate<W: Write>(
     for step in 1..=scene.steps() {
         transcript.step_begins(step);
         stopped = simulation.step(&mut recorder).err();
-        if stopped.is_some() || recorder.failed() {
+        if stopped.is_some() || recorder.has_failed() {
             break;
         }
         transcript.step_ends(step);

@@ -1,5 +1,5 @@
 //! The original's usage, version and parse-error texts, with the line breaks of its argument library.
-use crate::flags::{Flag, listed};
+use crate::flags::{Flag, list_flags};
 
 const WIDTH: usize = 75;
 const TITLE: &str = "Forty One Sixty Seven Sim";
@@ -19,7 +19,7 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
         text.extend(wrap(help.as_bytes(), 5, 0));
         text.push(b'\n');
     };
-    for flag in listed(program) {
+    for flag in list_flags(program) {
         let value = format!(" <{}>", kind(flag));
         let required = if flag.required { "(required)  " } else { "" };
         entry(&format!("-{}{value},  --{}{value}", flag.letter, flag.name), &format!("{required}{}", flag.help));
@@ -44,7 +44,7 @@ pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8
 /// Returns the flags in one wrapped paragraph.
 fn brief(program: &[u8]) -> Vec<u8> {
     let mut line = [program, b" "].concat();
-    for flag in listed(program) {
+    for flag in list_flags(program) {
         let entry = format!("-{} <{}>", flag.letter, kind(flag));
         let entry = if flag.required { format!(" {entry}") } else { format!(" [{entry}]") };
         line.extend(entry.as_bytes());
@@ -137,7 +137,7 @@ mod tests {
         assert!(help.ends_with(
             "\n   -h,  --help\n     Displays usage information and exits.\n\n\n   Forty One Sixty Seven Sim\n\n"
         ));
-        for flag in listed(b"p") {
+        for flag in list_flags(b"p") {
             assert!(help.contains(&format!("--{} <", flag.name)), "{}", flag.name);
         }
     }

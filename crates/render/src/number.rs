@@ -15,13 +15,13 @@ pub fn short(value: f64) -> String {
     if (-4..7).contains(&power) {
         #[expect(clippy::cast_sign_loss, reason = "not negative")]
         let decimals = (5 - power).max(0) as usize;
-        return trimmed(&format!("{value:.decimals$}")).to_owned();
+        return trim_zeros(&format!("{value:.decimals$}")).to_owned();
     }
-    format!("{}e{power}", trimmed(mantissa))
+    format!("{}e{power}", trim_zeros(mantissa))
 }
 
 /// Removes zeros after the point.
-fn trimmed(text: &str) -> &str {
+fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
@@ -29,7 +29,7 @@ fn trimmed(text: &str) -> &str {
 #[must_use]
 pub fn pixel(value: f64) -> String {
     let text = format!("{value:.2}");
-    let text = trimmed(&text);
+    let text = trim_zeros(&text);
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 

@@ -14,7 +14,7 @@ pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> S
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} {height}\" \
          role=\"img\">\n<title>{}</title>\n<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
-        escaped(title),
+        escape(title),
         background.hex()
     );
     for shape in shapes {
@@ -26,7 +26,7 @@ pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> S
 
 /// Returns text as the content of an element or attribute. Characters that XML does not know become a replacement.
 #[must_use]
-pub fn escaped(text: &str) -> String {
+pub fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {
@@ -74,7 +74,7 @@ fn write_element(shape: &Shape, svg: &mut String) {
             pixel(*x),
             pixel(*y),
             color.hex(),
-            escaped(text)
+            escape(text)
         ),
     };
 }

@@ -120,7 +120,7 @@ impl Detect<'_> {
                             let mark = "right except for a factor and small leading coefficients, which is allowed";
                             format!("  {}: {}\n    {}\n", curve.role, style.paint(Look::Good, mark), polynomial(own))
                         } else {
-                            beside(&curve.role.to_string(), expected, own, style)
+                            compare_polynomials(&curve.role.to_string(), expected, own, style)
                         };
                     }
                 }
@@ -178,7 +178,7 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
 
 /// Returns a polynomial of the trace, and next to the right one, power by power, where they differ by more than a
 /// factor.
-fn beside(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
+fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
         return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
     }

@@ -2,11 +2,11 @@
 use super::{
     case::Case,
     explain::{ExplanationView, lines},
-    number::counted,
+    number::format_count,
     smallest::{self, SmallestView},
     style::{Look, Style},
     view::{FindingView, document, view},
-    words::{first_divergence, located},
+    words::{describe_located, first_divergence},
 };
 use crate::foreign::one_line;
 use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure, smallest::SmallestScene};
@@ -32,7 +32,7 @@ pub struct Diagnosis {
 impl Diagnosis {
     /// Returns whether nothing is wrong.
     #[must_use]
-    pub fn accepted(&self) -> bool {
+    pub fn is_accepted(&self) -> bool {
         self.cases.iter().all(|case| case.accepted)
     }
 
@@ -47,14 +47,14 @@ impl Diagnosis {
         let mut text = String::new();
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();
         let is = if wrong == 1 { "is" } else { "are" };
-        let traces = counted(self.cases.len() as u64, "trace");
+        let traces = format_count(self.cases.len() as u64, "trace");
         let _ = writeln!(text, "{wrong} of {traces} {is} wrong by the fair rules.\n");
         if wrong == 0 {
             text += "These scenes show single formulas; a suite has more of them: fosssim-oracle grade PROGRAM\n\n";
         }
         if let Some(found) = &self.located {
             let heading = style.paint(Look::Strong, "Where it fails");
-            let _ = writeln!(text, "{heading}\n  {}\n", one_line(&located(found)));
+            let _ = writeln!(text, "{heading}\n  {}\n", one_line(&describe_located(found)));
         }
         let mut likely = 0;
         for common in &self.common {
@@ -69,7 +69,7 @@ impl Diagnosis {
                     _ => "Likely cause of the others, or a second cause of the same ones",
                 }
             };
-            let heading = format!("{most} ({explained} of {})", counted(wrong as u64, "wrong trace"));
+            let heading = format!("{most} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
             let _ = writeln!(text, "{}", style.paint(Look::Strong, &heading));
             text += &render_mistakes(std::slice::from_ref(common), style);
             text.push('\n');
@@ -144,10 +144,10 @@ view! {
         #[schemars(extend("const" = SCHEMA))]
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
-        accepted: bool = diagnosis.accepted(),
+        accepted: bool = diagnosis.is_accepted(),
         /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words;
         /// null if nothing is known.
-        located: Option<String> = diagnosis.located.as_ref().map(located),
+        located: Option<String> = diagnosis.located.as_ref().map(describe_located),
         /// With several traces, the mistake that explains most of the wrong traces.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
         /// With several traces, up to three mistakes that explain the wrong traces together; the first is `common`.

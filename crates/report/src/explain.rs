@@ -3,10 +3,10 @@
 //! They show all that they get; `mistakes::together::told` decides how much that is. Data of a submission appear as
 //! numbers only.
 use super::{
-    number::{counted, exact},
+    number::{exact, format_count},
     style::Style,
     view::{key, view},
-    words::explanation::{details, known, place, what},
+    words::explanation::{details, known_sentence, place, what},
 };
 use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
 
@@ -93,12 +93,12 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
 /// Returns the explanations that can't be distinguished from one. Known mistakes are named; a guess that is only found
 /// in polynomials has no sentence of its own, and is counted.
 fn describe_others(keys: &[String]) -> Option<String> {
-    let named: Vec<String> = keys.iter().filter_map(|key| known(key)).collect();
+    let named: Vec<String> = keys.iter().filter_map(|key| known_sentence(key)).collect();
     let (shown, more) = named.split_at(named.len().min(LISTED));
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
-        (true, more) => Some(format!("Can't be told apart here from {}", counted(more as u64, "other formula"))),
+        (true, more) => Some(format!("Can't be told apart here from {}", format_count(more as u64, "other formula"))),
         (false, 0) => Some(format!("Can't be told apart here from: {}.", list_sentences(shown))),
         (false, more) => Some(format!("Can't be told apart here from: {}; and {more} more.", list_sentences(shown))),
     }

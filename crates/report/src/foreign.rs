@@ -51,7 +51,7 @@ fn length_of_code(code: &str) -> Option<usize> {
 /// Returns the output of a program, [`plain`] and without a terminal's codes. Names keep them; otherwise two could look
 /// the same.
 #[must_use]
-pub fn printed(text: &str) -> String {
+pub fn clean_output(text: &str) -> String {
     plain(&without_codes(text))
 }
 
@@ -108,9 +108,9 @@ mod tests {
     fn control_characters_become_visible() {
         assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
         let log = "\u{1b}[32;1mOverall success: \u{1b}[31;1mFailed.\u{1b}[m";
-        assert_eq!(printed(log), "Overall success: Failed.");
-        assert_eq!(printed("\u{1b}]0;title\u{7}a\u{1b}]8;;x\u{1b}\\b"), "ab");
-        assert_eq!(printed("a\u{1b}[31\u{1b}c\u{1b}"), "a\\x1b[31\\x1bc\\x1b", "what is no whole code is seen");
+        assert_eq!(clean_output(log), "Overall success: Failed.");
+        assert_eq!(clean_output("\u{1b}]0;title\u{7}a\u{1b}]8;;x\u{1b}\\b"), "ab");
+        assert_eq!(clean_output("a\u{1b}[31\u{1b}c\u{1b}"), "a\\x1b[31\\x1bc\\x1b", "what is no whole code is seen");
         for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
             assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
         }

@@ -37,7 +37,7 @@ pub fn count(value: u64) -> String {
 
 /// Returns a count with its noun: `1 step`, `12 345 steps`.
 #[must_use]
-pub fn counted(value: u64, noun: &str) -> String {
+pub fn format_count(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
     format!("{} {noun}{plural}", count(value))
 }
@@ -45,7 +45,7 @@ pub fn counted(value: u64, noun: &str) -> String {
 /// Returns two values in one notation, as short as a comparison allows: six digits, and at least two from the first
 /// that differs. Returns also the place in both texts at which they begin to differ; `None` if they are equal.
 #[must_use]
-pub fn beside(expected: f64, actual: f64) -> (String, String, Option<usize>) {
+pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = in_one_notation(expected, actual).unwrap_or_else(|| (general(expected), general(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
@@ -88,7 +88,7 @@ mod tests {
     #[test]
     fn compared_values_have_one_notation_and_end_soon_after_they_part() {
         let of = |one: f64, other: f64| {
-            let (one, other, place) = beside(one, other);
+            let (one, other, place) = format_pair(one, other);
             (format!("{one} {other}"), place)
         };
         assert_eq!(of(-0.189_912_345_678, -0.004_412_345_678), ("-0.189912 -0.004412".to_owned(), Some(3)));
@@ -117,6 +117,6 @@ mod tests {
         assert_eq!(count(1234), "1234");
         assert_eq!(count(12_345), "12 345");
         assert_eq!(count(1_234_567), "1 234 567");
-        assert_eq!((counted(1, "step"), counted(0, "step")), ("1 step".to_owned(), "0 steps".to_owned()));
+        assert_eq!((format_count(1, "step"), format_count(0, "step")), ("1 step".to_owned(), "0 steps".to_owned()));
     }
 }

@@ -1,6 +1,6 @@
 //! Scenes as a list: a line on each.
 use super::{
-    number::counted,
+    number::format_count,
     style::{Look, Style},
     wrap,
 };
@@ -29,7 +29,7 @@ fn describe_size(scene: &Scene) -> String {
         (scene.half_planes.len() as u64, "half-plane"),
         (scene.steps().into(), "step"),
     ];
-    let told = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| counted(*many, noun));
+    let told = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| format_count(*many, noun));
     let milestones = scene.assignments().map(|assignment| assignment.key().to_uppercase());
     let milestones = milestones.reduce(|all, one| all + ", " + &one).map(|all| format!("for {all}"));
     told.chain(milestones).collect::<Vec<_>>().join(", ")

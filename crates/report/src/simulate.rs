@@ -1,6 +1,6 @@
 //! The summary of a simulation.
 use super::{
-    number::{count, counted},
+    number::{count, format_count},
     style::{Look, Style},
     table::{Align, Table},
     view::SCHEMA,
@@ -55,15 +55,15 @@ impl SimulationSummary<'_> {
         let zones = if counts.failsafes > 0 {
             format!(
                 "in {}, largest zone of {}",
-                counted(counts.geometric_steps, "step"),
-                counted(counts.largest_zone, "particle")
+                format_count(counts.geometric_steps, "step"),
+                format_count(counts.largest_zone, "particle")
             )
         } else {
             String::new()
         };
         table.row(["rigid failsafes".into(), count(counts.failsafes).into(), zones.into()]);
         table.row(["polynomials".into(), count(counts.polynomials).into(), "".into()]);
-        let records = format!("in {}", counted(self.written.records, "record"));
+        let records = format!("in {}", format_count(self.written.records, "record"));
         table.row(["bytes".into(), count(self.written.bytes).into(), records.into()]);
         if let Some(searches) = self.audited {
             let excluded = format!("{} excluded by a certificate", count(searches.excluded));

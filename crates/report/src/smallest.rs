@@ -3,7 +3,7 @@
 use crate::{
     explain::{ExplanationView, lines},
     foreign::{plain, quote},
-    number::counted,
+    number::format_count,
     style::{Look, Style},
     view::{FindingView, view},
     words::first_divergence,
@@ -18,7 +18,7 @@ pub(crate) fn title(small: &SmallestScene) -> String {
         1 => "1 body".to_owned(),
         more => format!("{more} bodies"),
     };
-    let (steps, runs) = (counted(small.steps.into(), "step"), counted(small.runs.into(), "run"));
+    let (steps, runs) = (format_count(small.steps.into(), "step"), format_count(small.runs.into(), "run"));
     let end = if small.is_minimal { "" } else { "; the search was stopped" };
     format!("The smallest scene: {bodies}, {steps} (made from {origin} in {runs}{end})")
 }

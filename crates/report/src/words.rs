@@ -4,8 +4,8 @@ pub mod explanation;
 
 mod located;
 
-use crate::{describe::no_result, number::counted};
-pub use located::located;
+use crate::{describe::no_result, number::format_count};
+pub use located::describe_located;
 
 use fosssim_findings::{
     FindingPlace, Grade, SubmissionFault, Verdict,
@@ -109,7 +109,7 @@ fn milestone(other: Assignment) -> String {
 /// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, if hints allow
 /// it.
 fn describe_unwritten(grade: &Grade) -> String {
-    let scenes = counted(grade.scenes().count() as u64, "scene");
+    let scenes = format_count(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
         Some((likely, _)) if likely.is_unfinished() => explanation::what(likely),
         _ => "Not written yet: the detection.".to_owned(),

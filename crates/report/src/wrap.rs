@@ -11,7 +11,7 @@ const ROOM: usize = 30;
 
 /// Returns the text with no line wider than `width`, if words allow it.
 #[must_use]
-pub fn wrapped(text: &str, width: usize) -> String {
+pub fn wrap(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
     for line in text.split_inclusive('\n') {
         let (line, end) = line.strip_suffix('\n').map_or((line, ""), |line| (line, "\n"));
@@ -93,7 +93,7 @@ mod tests {
     fn lines_are_broken_at_blanks_and_indented_under_what_they_continue() {
         let text = "short\n  likely mistake: the sum of radii is not squared anywhere\n- one two three four five six\n";
         assert_eq!(
-            wrapped(text, 24),
+            wrap(text, 24),
             "short\n  likely mistake: the\n      sum of radii is\n      not squared\n      anywhere\n- one two three \
             four\n  five six\n"
         );
@@ -103,11 +103,11 @@ mod tests {
     fn rows_go_on_under_their_last_column_when_there_is_room() {
         let row = "  WA  Group/scene   10  forty of a hundred steps are wrong, the first is step three\n";
         assert_eq!(
-            wrapped(row, 60),
+            wrap(row, 60),
             "  WA  Group/scene   10  forty of a hundred steps are wrong,\n                        the first is step \
             three\n"
         );
-        let narrow = wrapped(row, 50);
+        let narrow = wrap(row, 50);
         assert!(narrow.lines().all(|line| line.len() <= 50), "{narrow}");
         assert_eq!(narrow.lines().nth(1).map(|line| line.len() - line.trim_start().len()), Some(6), "{narrow}");
     }
@@ -115,22 +115,22 @@ mod tests {
     #[test]
     fn colors_take_no_room_and_wide_letters_take_two_columns() {
         let painted = "\x1b[1;31mone two\x1b[0m three";
-        assert_eq!(wrapped(painted, 13), painted);
-        assert_eq!(wrapped(painted, 12), "\x1b[1;31mone two\x1b[0m\n    three");
+        assert_eq!(wrap(painted, 13), painted);
+        assert_eq!(wrap(painted, 12), "\x1b[1;31mone two\x1b[0m\n    three");
         assert_eq!(columns("学生"), 4);
-        assert_eq!(wrapped("学生 学生 学生", 9), "学生 学生\n    学生");
+        assert_eq!(wrap("学生 学生 学生", 9), "学生 学生\n    学生");
     }
 
     #[test]
     fn commands_and_long_words_stay_whole_and_output_keeps_its_mark() {
         let command = "    $ fosssim-oracle grade ./FOSSSim --scene Group/name --hints full";
-        assert_eq!(wrapped(command, 30), command);
-        assert_eq!(wrapped("a-word-that-is-too-long for it", 10), "a-word-that-is-too-long\n    for it");
+        assert_eq!(wrap(command, 30), command);
+        assert_eq!(wrap("a-word-that-is-too-long for it", 10), "a-word-that-is-too-long\n    for it");
         assert_eq!(
-            wrapped("      | error: no such thing here", 20),
+            wrap("      | error: no such thing here", 20),
             "      | error: no\n      | such thing\n      | here"
         );
-        assert_eq!(wrapped("", 10), "");
-        assert_eq!(wrapped("\n\n", 10), "\n\n");
+        assert_eq!(wrap("", 10), "");
+        assert_eq!(wrap("\n\n", 10), "\n\n");
     }
 }

@@ -140,9 +140,9 @@ impl SpawnedSupervisor {
         wire::receive(&mut self.answers)
     }
 
-    fn lost(self) -> SandboxError {
+    fn loss_error(self) -> SandboxError {
         drop(self.control);
-        self.host.lost()
+        self.host.loss_error()
     }
 }
 
@@ -181,7 +181,7 @@ impl Backend {
     /// # Errors
     ///
     /// [`SandboxError::Missing`] below the required set: no new privileges, limits, reaper, system call filter, and
-    /// file rules (or, for root, a user per program). Nothing is run then; see [`Backend::unsandboxed`].
+    /// file rules (or, for root, a user per program). Nothing is run then; see [`Backend::without_sandbox`].
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::walls(&reports).map_err(lacking)?;
@@ -226,7 +226,7 @@ impl Backend {
     ///
     /// [`SandboxError::Missing`] when we are root and cannot become another user: a program is never run as root. Also
     /// when the supervisor does not start.
-    pub fn unsandboxed(supervisor: Supervisor) -> Result<Self, SandboxError> {
+    pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::whatever_holds(&reports).map_err(lacking)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
@@ -301,7 +301,7 @@ impl Backend {
             Ok(Event::Ready { session, user }) => {
                 let folder = match order.volatile.then(|| handed_over(&asked.control)).transpose() {
                     Ok(folder) => folder.map(OpenFolder::from),
-                    Err(_) => return Err(asked.lost()),
+                    Err(_) => return Err(asked.loss_error()),
                 };
                 let (SpawnedSupervisor { host, control, answers }, layers) = (asked, self.layers.clone());
                 let supervised = SupervisedRun { host, answers, session, user, order, layers };
@@ -319,7 +319,7 @@ impl Backend {
             }
             Ok(Event::Done(_)) | Err(_) => {
                 asked.host.kill();
-                Err(asked.lost())
+                Err(asked.loss_error())
             }
         }
     }
@@ -368,7 +368,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
-        own: own::known(supervisor).iter().map(|path| wire::raw(path)).collect(),
+        own: own::known_files(supervisor).iter().map(|path| wire::raw(path)).collect(),
         trace: trace.map(wire::raw),
         files: Vec::new(),
         volatile: false,

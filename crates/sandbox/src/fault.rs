@@ -79,7 +79,7 @@ pub(super) fn from_setup_failure(failure: wire::Failure) -> SandboxError {
 
 /// Returns the error for a supervisor that ended without a word. Its channel is closed by now, which ends one that is
 /// merely confused.
-pub(super) fn lost(mut child: Child) -> SandboxError {
+pub(super) fn loss_error(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();
     if let Some(stderr) = child.stderr.take() {

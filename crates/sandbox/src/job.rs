@@ -188,7 +188,7 @@ impl Job {
     /// Declares that the program is a copy of ours, with this identity: if it is missing or another file at the start,
     /// that is our fault and not the program's.
     #[must_use]
-    pub fn staged(mut self, identity: Option<ProgramIdentity>) -> Self {
+    pub fn with_identity(mut self, identity: Option<ProgramIdentity>) -> Self {
         self.staged = identity;
         self
     }

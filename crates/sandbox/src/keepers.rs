@@ -17,7 +17,7 @@ use std::{
 };
 
 use super::{
-    fault::{SandboxError, lost},
+    fault::{SandboxError, loss_error},
     job::ProgramIdentity,
     sys,
     wire::{self, Report, RunOrder},
@@ -136,12 +136,12 @@ pub(super) enum Host {
 
 impl Host {
     /// Returns the error for a supervisor that ended without a word. Its channel must be closed.
-    pub(super) fn lost(self) -> SandboxError {
+    pub(super) fn loss_error(self) -> SandboxError {
         match self {
-            Self::Own(child) => lost(child),
+            Self::Own(child) => loss_error(child),
             Self::Kept(mut keeper, _) => {
                 keeper.dismiss();
-                keeper.child.take().map_or_else(|| SandboxError::Lost { how: "it was waited for".into() }, lost)
+                keeper.child.take().map_or_else(|| SandboxError::Lost { how: "it was waited for".into() }, loss_error)
             }
         }
     }

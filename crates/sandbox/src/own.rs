@@ -57,7 +57,7 @@ fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
 
 /// Returns the files of [`files`] for this program and the one that supervises its runs, looked up once for all runs:
 /// `/usr/bin` alone may hold thousands.
-pub(super) fn known(supervisor: &Path) -> Arc<[PathBuf]> {
+pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
     static KNOWN: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     known.entry(supervisor.to_path_buf()).or_insert_with(|| files(&[Path::new(THIS), supervisor]).into()).clone()

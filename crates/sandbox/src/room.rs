@@ -13,12 +13,12 @@ use super::machine;
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
-    left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
+    memory_left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
 /// Returns the memory that the machine and our groups have left, as it was at most a moment ago: the kernel needs
 /// longer to add it up than to start a small program.
-fn left() -> Option<u64> {
+fn memory_left() -> Option<u64> {
     const MOMENT: Duration = Duration::from_millis(500);
     static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
     let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
@@ -27,7 +27,7 @@ fn left() -> Option<u64> {
     {
         return left;
     }
-    let left = std::iter::once(available()).chain(groups().iter().map(LimitedGroup::left)).flatten().min();
+    let left = std::iter::once(available()).chain(groups().iter().map(LimitedGroup::memory_left)).flatten().min();
     *last = Some((Instant::now(), left));
     left
 }
@@ -46,7 +46,7 @@ struct LimitedGroup {
 
 impl LimitedGroup {
     /// Returns `None` without a limit.
-    fn left(&self) -> Option<u64> {
+    fn memory_left(&self) -> Option<u64> {
         let number = |path: &Path| std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
         Some(number(&self.limit)?.saturating_sub(number(&self.usage)?))
     }
@@ -82,11 +82,11 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let group =
             LimitedGroup { limit: folder.path().join("memory.max"), usage: folder.path().join("memory.current") };
-        assert_eq!(group.left(), None);
+        assert_eq!(group.memory_left(), None);
         std::fs::write(&group.usage, "300\n").unwrap();
         std::fs::write(&group.limit, "max\n").unwrap();
-        assert_eq!(group.left(), None, "it has no limit");
+        assert_eq!(group.memory_left(), None, "it has no limit");
         std::fs::write(&group.limit, "1000\n").unwrap();
-        assert_eq!(group.left(), Some(700));
+        assert_eq!(group.memory_left(), Some(700));
     }
 }

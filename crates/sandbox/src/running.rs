@@ -109,7 +109,7 @@ impl RunningProgram {
         let (event, stdout, stderr) = match answer {
             Ok(answer) => answer,
             Err(_) => {
-                let error = supervised.host.lost();
+                let error = supervised.host.loss_error();
                 orphans::end(supervised.session, supervised.user);
                 return Err(error);
             }

@@ -89,7 +89,7 @@ fn round_to(value: f64, decimals: usize) -> f64 {
 }
 
 /// Returns the scene moved, turned, mirrored and scaled in many ways, each with all numbers rounded.
-pub(crate) fn transformed(scene: &Scene) -> Vec<Scene> {
+pub(crate) fn transformed_scenes(scene: &Scene) -> Vec<Scene> {
     let mut all = vec![scene.clone()];
     for radius in scene.particles.iter().map(|particle| particle.radius).chain(scene.edges.iter().map(|e| e.radius)) {
         all.extend((radius != 1.0 && radius > 0.0).then(|| scale(scene, 1.0 / radius, 1.0)));
@@ -128,7 +128,7 @@ fn translate(scene: &Scene, origin: [f64; 2]) -> Scene {
 }
 
 /// Returns the scene turned by right angles, and mirrored.
-pub(crate) fn turned(scene: &Scene) -> Vec<Scene> {
+pub(crate) fn turned_scenes(scene: &Scene) -> Vec<Scene> {
     let turn = |[[xx, xy], [yx, yy]]: [[f64; 2]; 2]| {
         let (mut turned, mut before) = (scene.clone(), scene.clone());
         let mut vectors: Vec<f64> = Vec::new();

@@ -29,7 +29,7 @@ impl PartKind {
     }
 
     /// Returns the scene without these parts.
-    pub(crate) fn removed(self, scene: &Scene, parts: &Range<usize>) -> Scene {
+    pub(crate) fn without_parts(self, scene: &Scene, parts: &Range<usize>) -> Scene {
         let mut scene = scene.clone();
         match self {
             Self::Bodies => {

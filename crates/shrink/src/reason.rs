@@ -94,7 +94,7 @@ impl WrongReason {
             // Most attempts end here, long before every mistake of the catalogue was tried.
             && (keys.is_empty() || reproduces(scene, &seen.trace, &keys))
             && matches!(findings(scene, &seen.trace), Some(TraceFault::Wrong(first)) if first.is_ordinary)
-            && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.said() == mistake.said())
+            && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.statement() == mistake.statement())
     }
 
     /// Returns whether the reference with the named mistake is plainly wrong on a scene; `None` if no mistake of the

@@ -2,7 +2,7 @@
 use crate::{
     clear::clear_decisions,
     features::plainer,
-    numbers::{rounder, transformed, turned},
+    numbers::{rounder, transformed_scenes, turned_scenes},
     parts::PartKind,
     reason::WrongReason,
     size::SceneSize,
@@ -125,9 +125,9 @@ impl<'a> Search<'a> {
             let before = self.size;
             PartKind::ALL.into_iter().for_each(|kind| self.remove(kind));
             while self.take(plainer(&self.best, self.reducer.assignment)) {}
-            while self.take(transformed(&self.best)) {}
+            while self.take(transformed_scenes(&self.best)) {}
             self.round();
-            while self.take(turned(&self.best)) {}
+            while self.take(turned_scenes(&self.best)) {}
             if self.is_stopped || self.size == before {
                 break;
             }
@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
             let starts = (0..count).step_by(length).rev();
             // One at a time: a scene of thousands of bodies has as many parts, and each attempt is a copy.
             let best = self.best.clone();
-            let without = starts.map(|start| kind.removed(&best, &(start..(start + length).min(count))));
+            let without = starts.map(|start| kind.without_parts(&best, &(start..(start + length).min(count))));
             if self.take(without) {
                 continue;
             }

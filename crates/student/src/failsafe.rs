@@ -50,12 +50,12 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 /// Returns whether something in the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
     let student = world.student;
-    let fixed = particles(world, zone).into_iter().any(|particle| world.fixed(particle));
+    let fixed = particles(world, zone).into_iter().any(|particle| world.is_fixed(particle));
     let half_plane = zone.half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
     let fixed = match () {
         () if student.makes(Mistake::FailsafeFixedForgotten) => false,
         () if student.makes(Mistake::FailsafeAllFixedOnly) => {
-            zone.particles.iter().all(|&particle| world.fixed(particle))
+            zone.particles.iter().all(|&particle| world.is_fixed(particle))
         }
         () => fixed,
     };
@@ -72,7 +72,7 @@ fn particles(world: &World, zone: &Zone) -> Vec<usize> {
 
 fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     for particle in particles(world, zone) {
-        if world.student.makes(Mistake::FailsafeStopsFixedOnly) && !world.fixed(particle) {
+        if world.student.makes(Mistake::FailsafeStopsFixedOnly) && !world.is_fixed(particle) {
             continue;
         }
         if !world.student.makes(Mistake::FailsafeStopKeepsPosition) {

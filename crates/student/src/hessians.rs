@@ -37,7 +37,7 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     }
     let keeps_rows = makes(Slip::RowsOfFixed) || makes(Slip::FixedForgotten);
     let clears = if makes(Slip::DiagonalOfFixed) { 0 } else { size };
-    for k in (0..size).filter(|k| world.fixed(k / 2) && !keeps_rows) {
+    for k in (0..size).filter(|k| world.is_fixed(k / 2) && !keeps_rows) {
         for other in 0..clears {
             a[k * size + other] = 0.0;
             a[other * size + k] = 0.0;

@@ -61,7 +61,7 @@ const fn whole(integrator: Integrator) -> Option<Term> {
 /// Mistakes with fixed particles, which are the same with all integrators.
 fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
     let makes = |slip: Slip| world.student.slips_by(whole, slip);
-    for k in (0..state.x.len()).filter(|k| world.fixed(k / 2)) {
+    for k in (0..state.x.len()).filter(|k| world.is_fixed(k / 2)) {
         if makes(Slip::FixedStopped) || makes(Slip::FixedHalted) {
             state.v[k] = 0.0;
         }
@@ -92,7 +92,7 @@ fn explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old
     let mut accelerations = forces::gradient(forces, x, &state.v);
     let forgets = whole(world.scene.integrator).is_some_and(|whole| student.slips_by(whole, Slip::FixedForgotten));
     for (k, entry) in accelerations.iter_mut().enumerate() {
-        *entry = if world.fixed(k / 2) && !forgets { 0.0 } else { minus_one * *entry };
+        *entry = if world.is_fixed(k / 2) && !forgets { 0.0 } else { minus_one * *entry };
         *entry /= world.masses[k];
     }
     let old = state.v.clone();
@@ -107,7 +107,7 @@ fn clear_fixed(world: &World, whole: Term, vector: &mut [f64]) {
         return;
     }
     for (k, entry) in vector.iter_mut().enumerate() {
-        if world.fixed(k / 2) {
+        if world.is_fixed(k / 2) {
             *entry = 0.0;
         }
     }

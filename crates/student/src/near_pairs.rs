@@ -66,7 +66,7 @@ impl<'a> NearPairSearch<'a> {
             return false;
         }
         if makes(StepMistake::NearPairsFixedSkipped) {
-            let is_fixed = |particle: usize| self.world.fixed(particle);
+            let is_fixed = |particle: usize| self.world.is_fixed(particle);
             if is_fixed(one) || (is_two && is_fixed(other)) {
                 return false;
             }

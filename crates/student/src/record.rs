@@ -77,7 +77,7 @@ impl Record {
 /// # Errors
 /// The bytes that were written, and why there are no more.
 pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
-    written(scene, student, StepLog::default())
+    write_trace(scene, student, StepLog::default())
 }
 
 /// Returns the trace of a program that may run forever: up to the step that has more polynomials than this.
@@ -86,10 +86,10 @@ pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepF
 /// The bytes that were written, and why there are no more.
 pub fn trace_within(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let guard = |index: usize, _: &[f64]| index < most;
-    written(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })
+    write_trace(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })
 }
 
-fn written(scene: &Scene, student: Student, mut log: StepLog<'_>) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+fn write_trace(scene: &Scene, student: Student, mut log: StepLog<'_>) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let world = World::new(scene.clone(), student);
     let mut state = world.initial_state();
     let mut bytes = Vec::new();

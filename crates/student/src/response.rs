@@ -74,7 +74,7 @@ impl PairResponse<'_> {
     /// Pushes a particle that is not fixed: `share / inertia` is the change of its speed along `u`.
     fn push(&mut self, particle: usize, sign: f64, share: f64, moved: f64, inertia: f64) {
         let student = self.world.student;
-        if self.world.fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
+        if self.world.is_fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
             return;
         }
         let sign = if student.makes(Mistake::ResponseSign) { -sign } else { sign };
@@ -118,7 +118,7 @@ impl PairResponse<'_> {
             |particle: usize, velocity: Vec2| student.add_scaled(at(self.q_start, particle), elapsed, velocity);
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
         let along = y3 - y2;
-        let alpha = clamped(student.dot(y1 - y2, along) / student.dot(along, along));
+        let alpha = clamp(student.dot(y1 - y2, along) / student.dot(along, along));
         let alpha = share_of_second(student, alpha);
         let beta = 1.0 - alpha;
         let edge_velocity = if student.makes(Mistake::ResponseEdgeStill) {
@@ -150,7 +150,7 @@ impl PairResponse<'_> {
     /// Bounces a particle off a half-plane, also a fixed one: the course's own response has no test for it.
     fn particle_half_plane(&mut self, one: usize) {
         let student = self.world.student;
-        let spares = student.makes(Mistake::ResponseHalfPlaneSparesFixed) && self.world.fixed(one);
+        let spares = student.makes(Mistake::ResponseHalfPlaneSparesFixed) && self.world.is_fixed(one);
         if spares {
             return;
         }
@@ -194,7 +194,7 @@ pub fn share_of_second(student: Student, alpha: f64) -> f64 {
 }
 
 /// Clamps a number between 0 and 1; 0 when it is not a number.
-pub fn clamped(alpha: f64) -> f64 {
+pub fn clamp(alpha: f64) -> f64 {
     let positive = if 0.0 < alpha { alpha } else { 0.0 };
     if positive < 1.0 { positive } else { 1.0 }
 }

@@ -7,7 +7,7 @@ use super::{
     edited::TermPart,
     objects::{Contact, Object, State},
     penalty::closest,
-    response::clamped,
+    response::clamp,
     world::{StepLog, World},
 };
 
@@ -87,7 +87,7 @@ impl SimplePass<'_> {
     }
 
     /// Returns the contact vector as the program returns it.
-    fn returned(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
+    fn returned_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
             Slip::Unit => unit(n),
@@ -119,15 +119,15 @@ impl SimplePass<'_> {
     fn mass(&self, kind: &SimpleKind, particle: usize) -> f64 {
         let is_finite = [Slip::FixedFinite, Slip::FixedAsFree].into_iter().any(|slip| self.makes(kind.response, slip));
         match () {
-            () if self.makes(kind.response, Slip::EqualMasses) && !self.world.fixed(particle) => 1.0,
-            () if self.world.fixed(particle) && !is_finite => f64::INFINITY,
+            () if self.makes(kind.response, Slip::EqualMasses) && !self.world.is_fixed(particle) => 1.0,
+            () if self.world.is_fixed(particle) && !is_finite => f64::INFINITY,
             () => self.world.masses[2 * particle],
         }
     }
 
     /// Changes the velocity of a body of the pair, which `role` names.
     fn push(&self, kind: &SimpleKind, state: &mut State, (role, particle): (usize, usize), n: Vec2, change: Vec2) {
-        if !self.world.fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
+        if !self.world.is_fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
             let part = TermPart { role, length: length(n), ..TermPart::from_term(kind.response, particle) };
             self.world.contribute(&mut state.v, part, change);
         }
@@ -136,12 +136,12 @@ impl SimplePass<'_> {
     fn particle_particle(&self, state: &mut State, one: usize, two: usize) -> Option<Vec2> {
         let kind = &PARTICLES;
         let n = at(&state.x, two) - at(&state.x, one);
-        let [v1, v2] = self.seen(kind, [at(&state.v, one), at(&state.v, two)]);
+        let [v1, v2] = self.seen_velocities(kind, [at(&state.v, one), at(&state.v, two)]);
         let radii = [one, two].map(|particle| self.world.scene.particles[particle].radius);
         if !self.collides(kind, n, radii, v1 - v2) {
             return None;
         }
-        let n = self.returned(kind, n);
+        let n = self.returned_vector(kind, n);
         let (u, bounce) = (unit(n), self.bounce(kind));
         let impulse = |pass: &Self, state: &State| {
             bounce * (pass.velocity(kind, state, two) - pass.velocity(kind, state, one)).dot(&u)
@@ -156,7 +156,7 @@ impl SimplePass<'_> {
     }
 
     /// Returns the velocities of two bodies as the test of approach takes them into account.
-    fn seen(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
+    fn seen_velocities(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
         match () {
             () if self.makes(kind.approach, Slip::FirstOnly) => [first, Vec2::zeros()],
             () if self.makes(kind.approach, Slip::SecondOnly) => [Vec2::zeros(), second],
@@ -171,14 +171,14 @@ impl SimplePass<'_> {
         let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
         let [v1, v2, v3] = [one, two, three].map(|particle| at(&state.v, particle));
         let on_line = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        let alpha = closest(student, Term::ClosestPoint, on_line, clamped);
+        let alpha = closest(student, Term::ClosestPoint, on_line, clamp);
         let n = x2 + alpha * (x3 - x2) - x1;
         let seen = match () {
             () if self.makes(kind.approach, Slip::Middle) => 0.5,
             () if self.makes(kind.approach, Slip::Mirrored) => 1.0 - alpha,
             () => alpha,
         };
-        let [of_particle, of_first] = self.seen(kind, [v1, v2]);
+        let [of_particle, of_first] = self.seen_velocities(kind, [v1, v2]);
         let turning = if self.makes(kind.approach, Slip::FirstOnly) { Vec2::zeros() } else { seen * (v3 - v2) };
         let particles = &self.world.scene.particles;
         let radius = if self.makes(kind.overlap, Slip::EndRadius) { particles[two].radius } else { edge.radius };
@@ -186,8 +186,8 @@ impl SimplePass<'_> {
         if is_off || !self.collides(kind, n, [particles[one].radius, radius], of_particle - of_first - turning) {
             return None;
         }
-        let n = self.returned(kind, n);
-        self.push_edge(state, [one, two, three], n, closest(student, kind.response, on_line, clamped));
+        let n = self.returned_vector(kind, n);
+        self.push_edge(state, [one, two, three], n, closest(student, kind.response, on_line, clamp));
         Some(n)
     }
 
@@ -238,8 +238,8 @@ impl SimplePass<'_> {
         if !self.collides(kind, n, [reach, 0.0], seen) {
             return None;
         }
-        let n = self.returned(kind, n);
-        if self.world.fixed(one) && self.makes(kind.response, Slip::FixedSpared) {
+        let n = self.returned_vector(kind, n);
+        if self.world.is_fixed(one) && self.makes(kind.response, Slip::FixedSpared) {
             return Some(n);
         }
         let (u, bounce, v) = (unit(n), self.bounce(kind), self.velocity(kind, state, one));

@@ -93,7 +93,7 @@ impl World {
     }
 
     /// Returns whether the particle is fixed.
-    pub fn fixed(&self, particle: usize) -> bool {
+    pub fn is_fixed(&self, particle: usize) -> bool {
         self.scene.particles[particle].fixed
     }
 }

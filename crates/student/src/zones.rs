@@ -44,10 +44,10 @@ pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
         _ => {}
     }
-    merged(student, zones)
+    merge_overlapping(student, zones)
 }
 
-fn merged(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
+fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();

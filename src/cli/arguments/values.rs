@@ -68,7 +68,7 @@ pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
 /// Returns a milestone of the course.
 pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
-        .try_map(|key| Assignment::named(&key.to_ascii_lowercase()).ok_or("no such milestone"))
+        .try_map(|key| Assignment::from_key(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
 /// Returns the reader of a page.

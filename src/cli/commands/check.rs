@@ -14,7 +14,7 @@ use crate::{
     report::{
         self,
         check::{StepChoice, WrongSteps, is_wrong, no_verdict, not_read},
-        number::counted,
+        number::format_count,
         page,
         style::Style,
         words,
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         tables: arguments.tables,
         looks_like: trace.looks_like,
     };
-    let accepted = check.accepted();
+    let accepted = check.is_accepted();
     let is_states_only = |data: std::fs::Metadata| Layout::for_scene(&scene.scene).is_states_only(data.len());
     if lasts && !accepted && std::fs::metadata(name).is_ok_and(is_states_only) {
         console::remark(format!("{}\n", words::STATES_ONLY));
@@ -123,7 +123,7 @@ fn options(arguments: &CheckArguments) -> replay::Options {
 fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
-        bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
+        bail!("the scene {} has {}; there is no step {step}", scene.name, format_count(steps.into(), "step"));
     }
     Ok(WrongSteps::new(if arguments.all {
         StepChoice::All

@@ -2,7 +2,7 @@
 use crate::{
     cli::{console, input},
     files::Place,
-    report::{foreign::plain, number::counted},
+    report::{foreign::plain, number::format_count},
     suite::{EarlierGrade, Grade},
 };
 use anyhow::{Context, Result, bail};
@@ -27,7 +27,7 @@ struct GradesFile {
 /// When it can't be read, or holds no grade.
 pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     let file = if place.is_dir() { Place::new(place, FILE) } else { Place::new("", place) };
-    let shown = input::shown(&file.path()).to_string();
+    let shown = input::printable_name(&file.path()).to_string();
     let text = file.read(LARGEST).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
         Ok(GradesFile { grades }) => grades,
@@ -52,7 +52,7 @@ pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     }
     let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
-        let new = counted(new.len() as u64, "submission");
+        let new = format_count(new.len() as u64, "submission");
         console::remark(format!("{new} without an earlier grade; the first is {}\n", plain(first)));
     }
 }

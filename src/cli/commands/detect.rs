@@ -13,7 +13,7 @@ use crate::{
     report::{
         describe::no_result,
         detect::{Detect as Report, Overlap, Place},
-        number::counted,
+        number::format_count,
         style::Style,
     },
     scene::Collision,
@@ -84,7 +84,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
     let steps = scene.scene.steps();
     if step == 0 || step > steps {
-        let steps = counted(steps.into(), "step");
+        let steps = format_count(steps.into(), "step");
         bail!("the scene {} has {steps}, counted from 1; there is no step {step}", scene.name);
     }
     let pair = pair::find_pair(word, &scene.scene).with_context(|| format!("the pair {word}"))?;

@@ -4,7 +4,7 @@ use crate::{
     files::Place,
     report::{
         foreign::one_line,
-        grade::{no_points, score, shortened},
+        grade::{no_points, score, shorten_name},
     },
     suite::{Submission, batch::Event, plan::Plan},
 };
@@ -68,7 +68,7 @@ impl<'a> LiveDisplay<'a> {
                     "[{}/{}] {}: {}, {}",
                     self.graded,
                     self.submissions.len(),
-                    shortened(&one_line(&grade.submission)),
+                    shorten_name(&one_line(&grade.submission)),
                     grade.verdict,
                     reached.or_else(|| no_points(grade)).unwrap_or_default(),
                 );
@@ -84,7 +84,7 @@ impl<'a> LiveDisplay<'a> {
         let Some(bars) = &mut self.bars else { return };
         let Some(task) = self.plan.scenes().nth(scene) else { return };
         let bar = console::add_bar(&bars.all, task.scene.steps().into(), "  {msg:<60!} step {pos} of {len}");
-        bar.set_message(format!("{} {}", shortened(&one_line(&self.submissions[submission].name)), task.name));
+        bar.set_message(format!("{} {}", shorten_name(&one_line(&self.submissions[submission].name)), task.name));
         bars.running.insert((submission, scene), bar);
     }
 }

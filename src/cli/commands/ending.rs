@@ -46,7 +46,7 @@ fn is_device(name: &str) -> bool {
 }
 
 /// Returns the detail with which each submission is shown.
-pub(super) const fn shown(arguments: &Arguments, is_class: bool) -> TextDetail {
+pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDetail {
     match (arguments.quiet, arguments.verbose) {
         (true, _) => TextDetail::Line,
         (_, true) => TextDetail::All,

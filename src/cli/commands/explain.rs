@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
         None if arguments.format == ExplainFormat::Text => console::report(&text)?,
         None => console::print(&text)?,
     }
-    Ok(if diagnosis.accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(if diagnosis.is_accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Runs a program on scenes that make every term of every formula visible, and on those that are named.

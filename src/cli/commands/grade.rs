@@ -3,7 +3,7 @@ use super::{
     closer::Closer,
     compare,
     display::{Counter, LiveDisplay},
-    ending::{HARDEST, exit_code, file_name, file_of_scene, shown, text},
+    ending::{HARDEST, exit_code, file_name, file_of_scene, text, text_detail},
     host::backend,
     last_run::LastRun,
     pages::{self, Pages},
@@ -25,9 +25,9 @@ use crate::{
     judge::Rules,
     report::{
         explain,
-        foreign::{plain, printed},
+        foreign::{clean_output, plain},
         grade,
-        number::counted,
+        number::format_count,
         page::Audience,
         style::Style,
         words,
@@ -119,7 +119,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let folder = keeps.then_some(output);
     let whole = plan.scenes().count();
     let mut last_run = LastRun::open(folder.as_deref(), &submissions, &plan.name);
-    let failed = match (arguments.failed, last_run.failed()) {
+    let failed = match (arguments.failed, last_run.failed_scenes()) {
         (false, _) => None,
         (true, Some(failed)) => Some(failed),
         (true, None) => bail!("no earlier run of this is known: run the same command without --failed first"),
@@ -192,7 +192,7 @@ impl GradingSession<'_> {
         let all = grades.iter().flat_map(Grade::scenes).count();
         if let Some(folder) = &self.folder {
             if taken > 0 {
-                let (folder, all) = (folder.display(), counted(all as u64, "result"));
+                let (folder, all) = (folder.display(), format_count(all as u64, "result"));
                 console::complain(format!("{taken} of {all} taken over from {folder} (--fresh grades all again)\n"));
             }
             if self.cancellation.is_cancelled() {
@@ -310,7 +310,7 @@ impl GradingSession<'_> {
 
     /// Renders the report for a terminal: of a class a table, and its result.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
-        let shown = shown(self.arguments, grades.len() > 1);
+        let shown = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
@@ -377,7 +377,7 @@ fn find_newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let mut text = String::new();
     if let Some(build) = &grade.build {
-        text += &format!("{}\n\n{}\n", words::build(&build.end), printed(&build.output));
+        text += &format!("{}\n\n{}\n", words::build(&build.end), clean_output(&build.output));
     }
     if let Some(unfit) = words::describe_unfit(grade) {
         text += &format!("{}\n", plain(&unfit));
@@ -391,7 +391,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         );
         for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {
             if !printed_there.trim().is_empty() {
-                text += &format!("--- standard {stream} ---\n{}\n", printed(printed_there));
+                text += &format!("--- standard {stream} ---\n{}\n", clean_output(printed_there));
             }
         }
     }

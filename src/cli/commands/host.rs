@@ -8,7 +8,7 @@ use crate::{
         output,
     },
     files::{self, Place},
-    report::{formats::Format, number::counted, page::Audience},
+    report::{formats::Format, number::format_count, page::Audience},
     sample::pin,
     sandbox::{self, Backend, Supervisor, selftest},
     student::{self, RowKind},
@@ -163,18 +163,19 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
     }
     let broken = table.broken().count();
-    let held = counted(table.held() as u64, "promise");
-    let untested = table.promises.len() - table.held() - broken;
+    let held = format_count(table.count_held() as u64, "promise");
+    let untested = table.promises.len() - table.count_held() - broken;
     let _ = writeln!(text, "\n{held} held, {broken} not held, {untested} not tested here");
     console::report(&text)?;
-    Ok(if broken == 0 && table.held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
+    Ok(if broken == 0 && table.count_held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
 /// Returns the sandbox, or an error that names what is missing.
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {
-        return Backend::unsandboxed(supervisor).context("programs can't be run on this machine, not even unsafely");
+        return Backend::without_sandbox(supervisor)
+            .context("programs can't be run on this machine, not even unsafely");
     }
     Backend::best(supervisor).context(
         "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do, \

@@ -46,7 +46,7 @@ impl LastRun {
     }
 
     /// Returns the scenes that were not accepted, of whichever submission; nothing when no run is known.
-    pub(super) fn failed(&self) -> Option<BTreeSet<String>> {
+    pub(super) fn failed_scenes(&self) -> Option<BTreeSet<String>> {
         let scenes = self.known.values().flatten().filter(|(_, accepted)| !**accepted);
         (!self.known.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
     }

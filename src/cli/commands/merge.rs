@@ -11,7 +11,7 @@ use crate::{
     files::{FileError, Folder, FolderEntry, Place},
     report::{
         grade::{self, TextDetail},
-        number::counted,
+        number::format_count,
     },
     suite::{
         Grade,
@@ -141,7 +141,7 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
         let (are, them) = if missing.len() == 1 { ("is", "it") } else { ("are", "them") };
         bail!(
             "{} of {of} {are} missing, or not done: {}; grade {them} with --shard, and merge again",
-            counted(missing.len() as u64, "shard"),
+            format_count(missing.len() as u64, "shard"),
             missing.join(", ")
         );
     }
@@ -177,8 +177,8 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
 
 /// Copies the files of a folder. Links are not followed, on neither side.
 fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
-    for name in from.names().with_context(|| format!("cannot read {}", from.shown().display()))? {
-        let (source, target) = (from.shown().join(&name), to.join(&name));
+    for name in from.names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
+        let (source, target) = (from.given_path().join(&name), to.join(&name));
         match from.entry(&name) {
             Ok(FolderEntry::Folder(inner)) if depth > 0 => copy(&inner, &target, depth - 1)?,
             Ok(FolderEntry::File(file)) => {
@@ -186,7 +186,7 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::complain(format!("passed over {}: it is not a file\n", input::shown(&source)));
+                console::complain(format!("passed over {}: it is not a file\n", input::printable_name(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }

@@ -72,7 +72,7 @@ impl Pages {
 
     /// Keeps a card; returns its name. One that can't be kept costs a picture and nothing else.
     pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
-        cards::store(&self.cards, &card?.kept()).ok()
+        cards::store(&self.cards, &card?.to_kept()).ok()
     }
 
     /// Returns the page of one submission.
@@ -131,14 +131,15 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
         // A failure while drawing costs no points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
-        return draw(&own, false).map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).kept()));
+        return draw(&own, false)
+            .map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).to_kept()));
     }
     // A picture that can't be made costs no points.
     let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
         Some(Card::from_words(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
     let cut = "The trace is longer than what the grader keeps of it: the pictures end where that ends.";
-    card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.kept())
+    card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.to_kept())
 }
 
 /// Returns the card of a judged trace. `trace_name` is the trace's name for the reader, `depth` the level of the

@@ -9,10 +9,10 @@ use crate::{
     judge::{Rules, fair::FairVerdict, kept::LONGEST, replay::Options},
     report::{
         case::Case,
-        check::stopped,
+        check::describe_stop,
         diagnosis::Diagnosis,
-        foreign::{one_line, printed},
-        number::counted,
+        foreign::{clean_output, one_line},
+        number::format_count,
         page::Card,
     },
     sandbox::{Backend, RunEnd},
@@ -175,7 +175,7 @@ impl ProgramUnderTest {
         let left_out = tasks.len() - cases.len();
         tasks.truncate(cases.len());
         if left_out > 0 {
-            let scenes = counted(left_out as u64, "scene");
+            let scenes = format_count(left_out as u64, "scene");
             console::remark(format!(
                 "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more: look for \
                  the loop that does not end\n"
@@ -183,7 +183,7 @@ impl ProgramUnderTest {
         }
         let (common, refuted) = find_likely(self.assignment, &cases, &tasks);
         for case in &mut cases {
-            case.explanations = diagnose::settled(&case.explanations, &common, &refuted).explanations;
+            case.explanations = diagnose::settle_trace(&case.explanations, &common, &refuted).explanations;
         }
         let located = locate_failures(&tasks, &ends);
         Ok(Some(ExaminedProgram {
@@ -209,7 +209,7 @@ pub(super) fn case(
     let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
     // The end of the program explains more than the end of its trace.
-    let note = note.or_else(|| outcome.stop.as_ref().map(|stop| stopped(stop, outcome)));
+    let note = note.or_else(|| outcome.stop.as_ref().map(|stop| describe_stop(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
     // A run that breaks off, and is right so far, needs no explanation.
@@ -277,7 +277,7 @@ fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
 
 /// Returns the last line of a program's error output, if it wrote one.
 fn last_line(stderr: &[u8]) -> String {
-    let text = printed(&String::from_utf8_lossy(stderr));
+    let text = clean_output(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
     last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
 }
@@ -302,6 +302,6 @@ fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<E
     let wrong: Vec<(&Scene, &[Explanation])> =
         wrong.into_iter().map(|(case, task)| (&task.scene, case.explanations.as_slice())).collect();
     let right: Vec<&Scene> = right.into_iter().map(|(_, task)| &task.scene).collect();
-    let refuted = diagnose::refuted(Some(whose), &wrong, &right);
+    let refuted = diagnose::refuted_keys(Some(whose), &wrong, &right);
     (diagnose::several(wrong.into_iter().map(|(_, explanations)| explanations), &refuted), refuted)
 }

@@ -2,7 +2,7 @@
 use crate::{
     cli::{arguments::RecordArguments, console, exit, output},
     files::{self, FileError, Place},
-    report::number::counted,
+    report::number::format_count,
     scene::LARGEST_SCENE,
     suite::{
         library,
@@ -107,7 +107,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
     text += &recording::diff("manifest.txt", &String::from_utf8_lossy(&before), &manifest(recordings));
     if text.is_empty() {
         let steps = recordings.iter().map(|(_, recording)| u64::from(recording.steps)).sum();
-        let (recordings, steps) = (counted(recordings.len() as u64, "recording"), counted(steps, "step"));
+        let (recordings, steps) = (format_count(recordings.len() as u64, "recording"), format_count(steps, "step"));
         console::print(format!("{recordings}, {steps}: all the same\n"))?;
         return Ok(exit::ACCEPTED);
     }
@@ -122,7 +122,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     let mut bytes = 0;
     for (stem, recording) in recordings {
         let place = |extension: &str| Place::new(folder, format!("{stem}.{extension}"));
-        let packed = recording.packed().with_context(|| format!("cannot compress {}", recording.name))?;
+        let packed = recording.pack().with_context(|| format!("cannot compress {}", recording.name))?;
         bytes += packed.len() as u64;
         replace(&place("bin.zst"), &packed)?;
         replace(&place("steps"), recording.digests.as_bytes())?;
@@ -136,7 +136,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         }
     }
     replace(&Place::new(folder, "manifest.txt"), manifest(recordings).as_bytes())?;
-    let (recordings, bytes) = (counted(recordings.len() as u64, "recording"), counted(bytes, "byte"));
+    let (recordings, bytes) = (format_count(recordings.len() as u64, "recording"), format_count(bytes, "byte"));
     console::print(format!("{recordings}, {bytes}, in {}\n", folder.display()))?;
     Ok(exit::ACCEPTED)
 }

@@ -127,7 +127,7 @@ impl Results<'_> {
             let lines = || grade::json_lines(grades, passed_over);
             let class = || {
                 let missing = grade::not_graded(grades, passed_over, Style::Plain);
-                wrap::wrapped(&(grade::class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
+                wrap::wrap(&(grade::class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
             };
             let tables: [(&str, &(dyn Fn() -> String + Sync)); 4] = [
                 ("grades.csv", &by_submission),
@@ -153,7 +153,7 @@ impl Results<'_> {
         if let (Some(file), Some(pages), [grade]) = (self.published_page, self.pages, grades)
             && !grade.is_visible()
         {
-            keep(write(file, || pages.render_one(&grade.published(), None, Audience::Student)));
+            keep(write(file, || pages.render_one(&grade.with_hidden_published(), None, Audience::Student)));
         }
         for report in reports {
             let told = self.visible_grades(report.format);

@@ -6,7 +6,7 @@ use crate::{
         selection::Selection,
     },
     files::{FileError, Place},
-    report::{number::counted, scene as report},
+    report::{number::format_count, scene as report},
     scene::{self, LARGEST_SCENE},
     suite::library,
 };
@@ -66,9 +66,9 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
         }
     }
     if !arguments.quiet {
-        let rest = if kept > 0 { format!(", {} there already", counted(kept, "scene")) } else { String::new() };
+        let rest = if kept > 0 { format!(", {} there already", format_count(kept, "scene")) } else { String::new() };
         let folder = arguments.output.display();
-        console::report(&format!("{} written to {folder}{rest}\n", counted(written, "scene")))?;
+        console::report(&format!("{} written to {folder}{rest}\n", format_count(written, "scene")))?;
     }
     if let Some(first) = other.first() {
         let more = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };

@@ -29,7 +29,7 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
         if let Err(error) = simulation.step(&mut (&mut recorder, &mut counts)) {
             bail!("the scene {} can't be simulated: {}", scene.name, no_result(&error));
         }
-        if recorder.failed() {
+        if recorder.has_failed() {
             break;
         }
         bar.show_step(step);
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
     drop(bar);
     let (output, written) = recorder.finish().context("the trace could not be written")?;
     output.finish()?;
-    let name = arguments.output.as_ref().map(|name| input::shown(name));
+    let name = arguments.output.as_ref().map(|name| input::printable_name(name));
     let searches = simulation.search_counts();
     let audited = arguments.audit.then_some(searches);
     let summary = SimulationSummary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };

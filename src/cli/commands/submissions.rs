@@ -203,7 +203,7 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
         // Its grade reports why it can't be read.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
-            let found = fosssim_intake::described(&start);
+            let found = fosssim_intake::describe(&start);
             Some(format!("it is neither a program nor an archive ({}): {found}", fosssim_intake::KNOWN))
         }
     }
@@ -219,7 +219,7 @@ fn entry(folder: &Path, path: &Path) -> Entry {
 /// Rejects a scene in the place of the program, which is a slip of the user.
 fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
-        let name = input::shown(path);
+        let name = input::printable_name(path);
         bail!(
             "{name} is a scene, not a program. To run a program on it: fosssim-oracle explain --program FOSSSim {name}; \
              to grade with it, list it in a suite (fosssim-oracle suite init) and give that with --suite"
@@ -229,7 +229,7 @@ fn refuse_scene(path: &Path) -> Result<()> {
 }
 
 fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
-    let name = names::shown(path.file_name().unwrap_or(path.as_os_str()));
+    let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
     console::complain(format!("passed over {name}: {why}\n"));
     passed_over.push(PassedOver { name, why: why.to_owned() });
 }
@@ -250,13 +250,13 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
     for name in &own {
-        *alike.entry(names::shown(name)).or_default().entry(name).or_default() += 1;
+        *alike.entry(names::printable(name)).or_default().entry(name).or_default() += 1;
     }
     let mut taken = BTreeSet::new();
     let mut name = |(path, own): (&&Path, &OsString)| {
-        let shown = names::shown(own);
+        let shown = names::printable(own);
         let plain = match &alike[&shown] {
-            same if same[own.as_os_str()] > 1 => names::shown(end_of(path, paths).as_os_str()),
+            same if same[own.as_os_str()] > 1 => names::printable(end_of(path, paths).as_os_str()),
             same if same.len() > 1 => names::exact(own),
             _ => shown,
         };

@@ -5,7 +5,7 @@ use crate::{
     report::{
         foreign::one_line,
         grade::points,
-        number::counted,
+        number::format_count,
         style::{Look, Style},
         view::key,
     },
@@ -51,7 +51,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     }
     let notes = match undecided.len() + unknown.len() {
         0 => String::new(),
-        notes => format!("; {} above", counted(notes as u64, "note")),
+        notes => format!("; {} above", format_count(notes as u64, "note")),
     };
     let _ = writeln!(text, "\n{}: {}{notes}", style.paint(Look::Good, "The suite is valid"), describe_size(plan));
     text
@@ -93,7 +93,7 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
 
 /// Returns `12 scenes, 100 points`.
 fn describe_size(plan: &Plan) -> String {
-    format!("{}, {}", counted(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
+    format!("{}, {}", format_count(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
 }
 
 /// Returns `1 point`, `12.5 points`.
@@ -167,15 +167,15 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let extra = if marking.extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
-        let (points, runs) = (counted_points(points), counted(runs.into(), "run"));
+        let (points, runs) = (counted_points(points), format_count(runs.into(), "run"));
         let _ = writeln!(
             text,
             "  speed: {points}, all up to {full_at} times the reference's processor time, none from {none_at}; {runs}"
         );
     }
     for task in &group.scenes {
-        let particles = counted(task.scene.particles.len() as u64, "particle");
-        let steps = counted(task.scene.steps().into(), "step");
+        let particles = format_count(task.scene.particles.len() as u64, "particle");
+        let steps = format_count(task.scene.steps().into(), "step");
         let _ = writeln!(text, "  {} ({particles}, {steps})", one_line(&task.name));
     }
     text

@@ -5,7 +5,7 @@ use crate::{
         console, exit, input,
     },
     report::{
-        number::counted,
+        number::format_count,
         trace::{self as report, ShownRecord, ShownStep},
     },
     trace::{Frame, Layout, Summary, labels},
@@ -30,7 +30,7 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
     let steps = scene.scene.steps();
     let step = arguments.step;
     if step > steps {
-        bail!("the scene {} has {}; there is no step {step}", scene.name, counted(steps.into(), "step"));
+        bail!("the scene {} has {}; there is no step {step}", scene.name, format_count(steps.into(), "step"));
     }
     let layout = Layout::for_scene(&scene.scene);
     let mut reader = trace.records(&scene.scene);

@@ -2,15 +2,15 @@
 //! is needed; the program's time, and whether it ended well, are unknown.
 use super::{
     compare,
-    ending::{HARDEST, exit_code, shown, text},
+    ending::{HARDEST, exit_code, text, text_detail},
     pages::{self, Pages},
     results::{Report, Results, refuse_several, wanted_pages},
     submissions::distinct_names,
 };
 use crate::{
-    cli::{arguments::grade::GradeArguments as Arguments, console, input::unpacked, selection::Selection},
+    cli::{arguments::grade::GradeArguments as Arguments, console, input::unpack, selection::Selection},
     files::{FileError, Folder},
-    report::{foreign::one_line, number::counted},
+    report::{foreign::one_line, number::format_count},
     suite::{
         EarlierGrade, Grade, SceneResult, SceneTask, cards::JudgedTrace, catch_panic, plan::Plan, result::Failure,
         traces,
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
         grades: &grades,
         passed_over: &[],
     };
-    results.write(reports, |grades| text(grades, &[], shown(arguments, grades.len() > 1), HARDEST, None))?;
+    results.write(reports, |grades| text(grades, &[], text_detail(arguments, grades.len() > 1), HARDEST, None))?;
     Ok(exit_code(&grades))
 }
 
@@ -105,7 +105,7 @@ fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     let named: Vec<&str> = strays.iter().take(NAMED).map(|name| name.as_str()).collect();
     let more = if strays.len() > NAMED { ", ..." } else { "" };
     let verb = if strays.len() == 1 { "belongs" } else { "belong" };
-    let count = counted(strays.len() as u64, "trace");
+    let count = format_count(strays.len() as u64, "trace");
     (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{more}", named.join(", ")))
 }
 
@@ -120,12 +120,12 @@ fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Opti
         Ok(Err(fault)) => Failure::Panic { stage: None, fault: fault.to_string(), trace: None },
         Err(error) => Failure::Machine(error.to_string()),
     };
-    (task.failed(failure), None)
+    (task.failure_result(failure), None)
 }
 
 fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) -> io::Result<JudgedScene> {
     let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
-    let (mut result, examined) = traces::judged(plan, task, &trace[..], &mut ());
+    let (mut result, examined) = traces::judge_trace(plan, task, &trace[..], &mut ());
     if let Some(pages) = pages
         && !(result.verdict.is_accepted() && result.differs.is_none())
     {
@@ -155,7 +155,7 @@ fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<
     let names = ["bin", "bin.zst", "bin.gz"].map(|end| [scene, last].map(|name| format!("{name}.{end}")));
     for name in names.into_iter().flatten() {
         match folder.file(OsStr::new(&name), u64::MAX) {
-            Ok((file, _)) => match unpacked(file, most)? {
+            Ok((file, _)) => match unpack(file, most)? {
                 Ok(trace) => return Ok((trace, None)),
                 Err(why) => passed_over = passed_over.or_else(|| Some(format!("{name} is passed over: {why}"))),
             },

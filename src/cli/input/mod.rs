@@ -8,7 +8,7 @@ mod scene;
 mod trace;
 
 pub(super) use scene::{SceneInput, scene};
-pub(super) use trace::{TraceInput, is_scene, trace, unpacked};
+pub(super) use trace::{TraceInput, is_scene, trace, unpack};
 
 use crate::files::open_for_reading;
 use crate::{
@@ -23,7 +23,7 @@ use std::{
 };
 
 /// Returns a file's name as typed, fit for printing: a stranger's file may be called by codes that a terminal obeys.
-pub(super) fn shown(name: &Path) -> String {
+pub(super) fn printable_name(name: &Path) -> String {
     one_line(&name.display().to_string())
 }
 

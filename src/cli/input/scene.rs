@@ -1,5 +1,5 @@
 //! Scenes as inputs: strict reading, all problems together.
-use super::{asset, no_asset, open, shown, trace::ZSTD_MAGIC};
+use super::{asset, no_asset, open, printable_name, trace::ZSTD_MAGIC};
 use crate::files::{Identity, read_limited};
 use crate::{
     cli::console,
@@ -26,7 +26,7 @@ pub(in crate::cli) struct SceneInput {
 /// # Errors
 /// When it can't be read, or has errors: all of them, with their places.
 pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
-    let shown = shown(name);
+    let shown = printable_name(name);
     if name == Path::new("-") {
         bail!("a scene is read from a file; only a trace may come from standard input");
     }

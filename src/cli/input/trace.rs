@@ -1,5 +1,5 @@
 //! Traces as inputs: streams, decompressed on the way.
-use super::{asset, no_asset, open, shown};
+use super::{asset, no_asset, open, printable_name};
 use crate::files::{Identity, patient};
 use crate::{
     cli::output::has_extension,
@@ -72,7 +72,7 @@ impl Failure {
 /// # Errors
 /// When it can't be opened. Damage shows only while it is read.
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
-    let shown = shown(name);
+    let shown = printable_name(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
     let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED.0);
@@ -167,7 +167,7 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
 ///
 /// # Errors
 /// When the file can't be read.
-pub(in crate::cli) fn unpacked(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
+pub(in crate::cli) fn unpack(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
     let failure = Failure::default();
     let mut bytes = Vec::new();
     let read = maybe_packed(Box::new(file), false, &failure)

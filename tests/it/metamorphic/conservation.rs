@@ -32,7 +32,7 @@ impl Observer for AfterImpulses {
     fn impulse(&mut self, _impulse: &Impulse) {
         self.impulses += 1;
     }
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         self.state = state.clone();
     }
 }

@@ -45,7 +45,7 @@ impl Observer for Story {
         };
         self.detections.push((detection.pair, detection.polynomials.to_vec(), hit));
     }
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         self.middle = Some(state.clone());
     }
 }

@@ -144,7 +144,7 @@ impl Explanation {
 
     /// Returns the statement in one word: equal for explanations in the same words, and different for others.
     #[must_use]
-    pub fn said(&self) -> String {
+    pub fn statement(&self) -> String {
         match &self.about {
             About::Polynomials { found: OfPolynomials::Guess(guess), .. } if guess.is_general() => guess.word(),
             About::Polynomials { found: OfPolynomials::Guess(_), .. } => {

@@ -78,7 +78,7 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
         return Some((Assignment::T2M1, EARLIER));
     }
     let (key, number) = name.split_once('@').map_or((name, None), |(key, number)| (key, Some(number)));
-    let assignment = Assignment::named(&key.to_ascii_lowercase())?;
+    let assignment = Assignment::from_key(&key.to_ascii_lowercase())?;
     let all = versions(assignment);
     let number = match number {
         Some(number) => all.iter().enumerate().position(|(index, _)| number == (index + 1).to_string())?,

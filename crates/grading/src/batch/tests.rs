@@ -115,7 +115,7 @@ fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
         let results = tempfile::tempdir().expect("folder");
         let grade = || run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades;
         let grades = grade();
-        assert_eq!(stage.started(), 2 * plan.scenes().count(), "{jobs} jobs");
+        assert_eq!(stage.started_count(), 2 * plan.scenes().count(), "{jobs} jobs");
         assert!(grades.iter().all(|grade| grade.taken_over() == 0), "nothing is from an earlier run");
         assert!(grades[0].scenes().map(|scene| &scene.result).eq(grades[1].scenes().map(|scene| &scene.result)));
         for grades in [&grades, &grade()] {
@@ -228,7 +228,7 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
         let grades = run(&grader, &stage.submissions(&["slow", "right"]), None, &never, &mut |_| {}).grades;
         let expected = if time_outs == 0 { scenes } else { time_outs as usize };
         // Jobs that work side by side may have begun with others meanwhile.
-        let began = stage.started() - scenes;
+        let began = stage.started_count() - scenes;
         assert!(began == expected || jobs > 1 && began > expected, "{began} of {expected} with {jobs} jobs");
         assert_eq!((grades[0].verdict, grades[0].points), (Verdict::TimeLimit, Some(0.0)));
         assert_eq!(grades[1].points, Some(15.0), "the next submission is not held up");

@@ -16,7 +16,7 @@ use fosssim_num::{
 const NEAR: f64 = 0.05;
 
 /// Returns the place at which a pair is checked.
-pub(super) const fn found(stage: Stage) -> Found {
+pub(super) const fn place_of_stage(stage: Stage) -> Found {
     match stage {
         Stage::Simple | Stage::ContinuousTime => Found::Continuous,
         Stage::Impulses { round: 0 } => Found::First,

@@ -53,7 +53,7 @@ impl<'a> Watch<'a> {
 
     fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Happening {
         let scene = self.scene;
-        let (found, when) = (events::found(self.stage), events::when(time));
+        let (found, when) = (events::place_of_stage(self.stage), events::when(time));
         let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
         let masses = events::masses(scene, bodies);
         match detection.pair.kind {
@@ -216,7 +216,7 @@ impl Observer for Watch<'_> {
                 let no_contact = NoContact {
                     kind: events::kind(detection.pair.kind),
                     why: events::why(detection.pair.kind, detection.polynomials),
-                    found: events::found(self.stage),
+                    found: events::place_of_stage(self.stage),
                     fixed: events::some_fixed(self.scene, &bodies),
                 };
                 self.coverage.note(&no_contact.happening());

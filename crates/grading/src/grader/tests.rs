@@ -71,13 +71,13 @@ fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_
     let folder = tempfile::tempdir().expect("folder");
     for name in ["right", "wrong", "half"] {
         let submission = stage.submissions(&[name]).remove(0);
-        let before = stage.started();
+        let before = stage.started_count();
         let memory = MemoryResults::default();
         let (first, fault, told) = grade(&grader, &submission, &memory);
         assert!(fault.is_none() && first.taken_over() == 0);
-        assert_eq!((told.len(), memory.len(), stage.started() - before), (scenes, scenes, scenes));
+        assert_eq!((told.len(), memory.len(), stage.started_count() - before), (scenes, scenes, scenes));
         let (again, _, told) = grade(&grader, &submission, &memory);
-        assert_eq!((again.taken_over(), stage.started() - before), (scenes, scenes), "all of it is found");
+        assert_eq!((again.taken_over(), stage.started_count() - before), (scenes, scenes), "all of it is found");
         assert!(told.iter().all(|line| line.ends_with("true")));
         let journal = FolderResults::open(folder.path(), false).expect("a journal");
         let (on_disk, _, _) = grade(&grader, &submission, &journal);
@@ -101,11 +101,11 @@ fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() 
     let (stopped, fault, told) = grade(&grader, &submission, &small);
     assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("room")), "{fault:?}");
     assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));
-    assert_eq!((small.len(), stage.started()), (3, 4), "the fourth result was one too many");
+    assert_eq!((small.len(), stage.started_count()), (3, 4), "the fourth result was one too many");
     assert_eq!(told.len(), plan.scenes().count(), "every scene is told of all the same");
     // A teacher who makes room goes on from there.
     let (resumed, _, _) = grade(&grader, &submission, &small);
-    assert_eq!((resumed.taken_over(), stage.started()), (3, 5));
+    assert_eq!((resumed.taken_over(), stage.started_count()), (3, 5));
 }
 
 #[test]

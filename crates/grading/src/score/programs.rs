@@ -43,7 +43,7 @@ impl SubmissionGrading<'_> {
         let looks_like = self.looks_like(&results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
-            drop(self.staged());
+            drop(self.staged_program());
         }
         // The submission's copy is removed.
         let staged = lock(&self.staged).take();
@@ -124,7 +124,7 @@ impl SubmissionGrading<'_> {
         if count(Verdict::is_accepted) > 0 || 2 * count(unread) < results.len() {
             return None;
         }
-        let (staged, first) = (self.staged(), self.grader.plan.scenes().next()?);
+        let (staged, first) = (self.staged_program(), self.grader.plan.scenes().next()?);
         let program = &staged.as_ref().as_ref().ok()?.program;
         // A fault here is no reason to lose the grade.
         let found = milestone::looks_like(&self.runner(first, None), program).ok().flatten();

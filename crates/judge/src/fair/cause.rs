@@ -99,13 +99,13 @@ mod tests {
     use crate::samples::{self, BOUNCE, relog};
     use fosssim_model::trace::Frame;
 
-    fn judged(trace: &[u8]) -> Outcome {
-        samples::judged(&samples::scene(BOUNCE), trace)
+    fn judge_by_both(trace: &[u8]) -> Outcome {
+        samples::judge_by_both(&samples::scene(BOUNCE), trace)
     }
 
     /// Returns the reference trace with changed frames.
-    fn changed(change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
-        samples::changed(&samples::scene(BOUNCE), change)
+    fn changed_trace(change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
+        samples::changed_trace(&samples::scene(BOUNCE), change)
     }
 
     /// Multiplies every coefficient.
@@ -117,40 +117,40 @@ mod tests {
 
     #[test]
     fn where_the_books_agree_there_is_no_cause() {
-        assert_eq!(cause(&judged(&changed(|_| {}))), None);
-        assert_eq!(cause(&judged(&changed(|frames| frames[2].impulses.clear()))), None);
-        assert_eq!(cause(&judged(&[])), None);
+        assert_eq!(cause(&judge_by_both(&changed_trace(|_| {}))), None);
+        assert_eq!(cause(&judge_by_both(&changed_trace(|frames| frames[2].impulses.clear()))), None);
+        assert_eq!(cause(&judge_by_both(&[])), None);
     }
 
     #[test]
     fn what_parity_never_looks_at_is_named() {
         let both = |change: fn(&mut Frame)| {
-            changed(|frames| {
+            changed_trace(|frames| {
                 change(&mut frames[1]);
                 change(&mut frames[2]);
             })
         };
-        let trailing = [&changed(|_| {})[..], b"more"].concat();
+        let trailing = [&changed_trace(|_| {})[..], b"more"].concat();
         for (trace, expected) in [
             (trailing, Cause::TrailingBytes),
-            (changed(|frames| frames[0].state.positions[0] = 1.0), Cause::FirstRecord),
-            (changed(|frames| frames[1].polynomials.clear()), Cause::MidRecord),
+            (changed_trace(|frames| frames[0].state.positions[0] = 1.0), Cause::FirstRecord),
+            (changed_trace(|frames| frames[1].polynomials.clear()), Cause::MidRecord),
             (both(|frame| frame.impulses[0].time = 0.75), Cause::ContactTime),
             (both(|frame| frame.impulses.push(frame.impulses[0])), Cause::RepeatedCollision),
             (both(|frame| frame.impulses[0].normal.x = f64::NAN), Cause::NotANumber),
         ] {
-            let outcome = judged(&trace);
+            let outcome = judge_by_both(&trace);
             assert_eq!(cause(&outcome), Some(expected), "{:?}", outcome.fair);
         }
     }
 
     #[test]
     fn large_numbers_are_the_originals_fault() {
-        let outcome = judged(&changed(|frames| scaled(frames, 1.0 + 1e-12)));
+        let outcome = judge_by_both(&changed_trace(|frames| scaled(frames, 1.0 + 1e-12)));
         assert_eq!(cause(&outcome), None, "a small factor passes both");
         // Whether the rescaling rounds the other way is up to the factor.
         let factors = [3.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0].map(|n| 1e12 / n);
-        let causes = factors.map(|factor| cause(&judged(&changed(|frames| scaled(frames, factor)))));
+        let causes = factors.map(|factor| cause(&judge_by_both(&changed_trace(|frames| scaled(frames, factor)))));
         assert!(causes.contains(&Some(Cause::AbsoluteCoefficients)), "{causes:?}");
         assert!(Cause::AbsoluteCoefficients.to_string().contains("1e-10"));
     }

@@ -112,7 +112,7 @@ impl Similarity {
 
     /// Returns the match of polynomials that are right.
     #[inline(always)]
-    pub fn matched(&self) -> Match {
+    pub fn as_match(&self) -> Match {
         Match { scale: Some(self.scale), share: self.worst / self.tolerance() }
     }
 
@@ -148,7 +148,7 @@ fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
     let similarity = Similarity::measure(values.get(..kept.len())?, actual);
     let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
-    is_right.then(|| similarity.matched())
+    is_right.then(|| similarity.as_match())
 }
 
 /// Returns whether a logged polynomial is certainly wrong with every factor, found without searching for the best one.

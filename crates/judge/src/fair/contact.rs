@@ -254,7 +254,7 @@ fn distance(expected: Vec2, actual: Vec2) -> f64 {
 }
 
 /// Returns a logged collision as a decision, if a response can be computed from it.
-pub(super) fn followed(logged: LoggedImpulse) -> Option<Decision> {
+pub(super) fn logged_decision(logged: LoggedImpulse) -> Option<Decision> {
     let LoggedImpulse { normal, time, .. } = logged;
     let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
     is_usable.then_some(Decision::Hit { time, normal })

@@ -133,7 +133,7 @@ impl BoundedPairMotion {
     }
 
     /// Returns the motion of particles whose end positions may be off by `deviations` (2N, scene unit) on top.
-    pub fn widened(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
+    pub fn widen(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
             if way.shift.x.bound == 0.0 && way.shift.y.bound == 0.0 {

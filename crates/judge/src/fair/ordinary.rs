@@ -66,10 +66,10 @@ pub(super) fn largest(vectors: &[f64]) -> f64 {
 /// Returns the extent of all points together; 0 of one point.
 fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
-    let [x, y] = points.fold([none; 2], |[x, y], point| [widened(x, point.x), widened(y, point.y)]);
+    let [x, y] = points.fold([none; 2], |[x, y], point| [widen(x, point.x), widen(y, point.y)]);
     (x[1] - x[0]).max(y[1] - y[0]).max(0.0)
 }
 
-fn widened([low, high]: [f64; 2], value: f64) -> [f64; 2] {
+fn widen([low, high]: [f64; 2], value: f64) -> [f64; 2] {
     [low.min(value), high.max(value)]
 }

@@ -131,7 +131,7 @@ impl Signs {
 
 impl PerturbedRun<'_> {
     /// Returns the hit a little later or earlier, with either vector to an edge's end: no root finder is exact.
-    fn late(&self, time: f64) -> Option<Decision> {
+    fn decide_nearby(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {
             0 => return None,
@@ -204,7 +204,7 @@ impl Steer for PerturbedRun<'_> {
             (Decision::Hit { .. }, Decision::Hit { time, .. })
                 if matches!(known.pass.stage, Stage::Impulses { .. } | Stage::Geometric { .. }) =>
             {
-                self.late(time).unwrap_or(decision)
+                self.decide_nearby(time).unwrap_or(decision)
             }
             (Decision::Hit { .. }, _) => known.decision,
             (Decision::Miss { .. }, Decision::Hit { time, .. }) => Decision::Miss { time: Time::Found(time) },

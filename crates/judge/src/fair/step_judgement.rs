@@ -78,7 +78,7 @@ impl StepJudgement {
     }
 
     /// Returns the number of polynomials that depend on factors.
-    pub(super) fn pended(&self) -> u64 {
+    pub(super) fn pending_count(&self) -> u64 {
         self.pending.iter().map(|pending| pending.count).sum()
     }
 

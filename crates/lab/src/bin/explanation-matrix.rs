@@ -6,9 +6,9 @@
 //! correct variant is accused.
 #![forbid(unsafe_code)]
 use anyhow::Context;
-use fosssim_lab::runs::{WatchedScene, judged, trace};
+use fosssim_lab::runs::{WatchedScene, judge, trace};
 use fosssim_oracle::{
-    diagnose::{Explanation, known, several},
+    diagnose::{Explanation, find_known, several},
     student::{CATALOGUE, Row, RowKind, Student},
 };
 use rayon::prelude::*;
@@ -127,10 +127,10 @@ fn explain(watched: &WatchedScene, row: &Row) -> ExplainedTrace {
         return (Outcome::Same, Duration::ZERO, Vec::new());
     }
     let begin = Instant::now();
-    let explanations = known(&watched.scene, &trace[..]);
+    let explanations = find_known(&watched.scene, &trace[..]);
     let time = begin.elapsed();
     let outcome = match explanations.first().cloned() {
-        None => match judged(&watched.scene, &trace).parity.findings.wrong_steps {
+        None => match judge(&watched.scene, &trace).parity.findings.wrong_steps {
             0 => Outcome::Unseen,
             steps => Outcome::Nothing(steps),
         },

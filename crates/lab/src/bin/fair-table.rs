@@ -7,7 +7,7 @@
 use anyhow::Context;
 use fosssim_lab::{
     corpus::{self, CorpusRow},
-    runs::judged,
+    runs,
 };
 use fosssim_oracle::judge::{Overall, fair::Judgement};
 use rayon::prelude::*;
@@ -47,7 +47,7 @@ fn main() -> anyhow::Result<()> {
 
 fn judge(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judgement)>> {
     let Some((scene, trace)) = row.read(corpus)? else { return Ok(None) };
-    let outcome = judged(&scene, &trace);
+    let outcome = runs::judge(&scene, &trace);
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 

@@ -6,7 +6,7 @@
 //! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all
 //! (then no rule book could ever see it), when the fair rules miss one, and when they reject a correct variant.
 #![forbid(unsafe_code)]
-use fosssim_lab::runs::{WatchedScene, is_accepted, judged, trace};
+use fosssim_lab::runs::{WatchedScene, is_accepted, judge, trace};
 use fosssim_oracle::{
     judge::{FindingKind, Outcome, Overall},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -112,7 +112,7 @@ fn cell(case: &WatchedScene, row: &Row) -> MatrixCell {
     if trace == case.right {
         return [Answer::Same; RULE_BOOKS.len()];
     }
-    let outcome = judged(&case.scene, &trace);
+    let outcome = judge(&case.scene, &trace);
     [parity(&outcome), fair(&outcome)]
 }
 

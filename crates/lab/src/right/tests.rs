@@ -1,5 +1,5 @@
 use super::*;
-use crate::runs::judged;
+use crate::runs::judge;
 use fosssim_model::{assignments::Assignment, scene};
 use fosssim_oracle::{judge::fair::FairVerdict, suite::library};
 
@@ -21,7 +21,7 @@ fn scene(masses: [f64; 3]) -> Scene {
 /// The verdict on what a program writes of a scene.
 fn verdict(scene: &Scene, arithmetic: Arithmetic) -> FairVerdict {
     let trace = arithmetic.trace(scene, |_, _| ()).unwrap_or_else(|_| panic!("{} ends early", arithmetic.name));
-    judged(scene, &trace).fair.expect("the fair rules were asked").verdict
+    judge(scene, &trace).fair.expect("the fair rules were asked").verdict
 }
 
 #[test]

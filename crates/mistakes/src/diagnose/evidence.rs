@@ -1,8 +1,9 @@
 //! The evidence for a mistake: the symptoms of all traces that it would explain.
 //!
-//! Each explanation of a trace is a symptom with its alternatives: all words ([`Explanation::said`]) that would explain
-//! it as well. The word that the most traces allow is the likeliest. Words that exactly the same symptoms allow can't
-//! be distinguished; a word that other traces with wrong polynomials of the same sort do not allow is none of them.
+//! Each explanation of a trace is a symptom with its alternatives: all words ([`Explanation::statement`]) that would
+//! explain it as well. The word that the most traces allow is the likeliest. Words that exactly the same symptoms allow
+//! can't be distinguished; a word that other traces with wrong polynomials of the same sort do not allow is none of
+//! them.
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
@@ -51,7 +52,7 @@ pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bo
         let mut allowed = alternatives(one);
         allowed.retain(|word, _| !is_refuted(word));
         let mut same_as: Vec<String> = one.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
-        let is_told = allowed.contains_key(&one.said());
+        let is_told = allowed.contains_key(&one.statement());
         let one = match same_as.iter().position(|key| find(key).is_some()) {
             _ if is_told => Explanation { same_as, ..one.clone() },
             Some(place) => as_row(one, find(&same_as.remove(place))?, same_as),
@@ -99,7 +100,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
     for (number, trace) in open.iter().enumerate() {
         for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.one.is_vote()) {
-            let said = symptom.one.said();
+            let said = symptom.one.statement();
             for word in symptom.allowed.keys() {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
@@ -170,7 +171,7 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
 /// all of them allow.
 fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
-    let said = told.said();
+    let said = told.statement();
     // Nothing of a contradicting trace is reproduced.
     let against = open.iter().filter(|trace| !trace.allows(&said)).flat_map(|trace| &trace.symptoms);
     told.samples +=
@@ -178,7 +179,7 @@ fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let About::Polynomials { subjects, found } = &mut told.about else { return told };
     let agreeing: Vec<&Symptom> =
         open.iter().flat_map(|trace| &trace.symptoms).filter(|one| one.allowed.contains_key(&said)).collect();
-    for symptom in agreeing.iter().filter(|symptom| symptom.one.said() == said) {
+    for symptom in agreeing.iter().filter(|symptom| symptom.one.statement() == said) {
         if let About::Polynomials { subjects: theirs, .. } = &symptom.one.about {
             subjects.extend(theirs);
         }

@@ -43,7 +43,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
     while found.len() + usize::from(!empty.is_empty()) < MOST {
         let Some(next) = likeliest(&open) else { break };
-        let said = next.said();
+        let said = next.statement();
         let is_empty = find(&next.key).is_some_and(is_empty_stage);
         let is_told = if is_empty {
             is_seen_again(&open, &said)
@@ -62,7 +62,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
         } else {
             for trace in &mut open {
                 trace.symptoms.iter_mut().for_each(|symptom| _ = symptom.allowed.remove(&said));
-                trace.symptoms.retain(|symptom| !symptom.allowed.is_empty() && symptom.one.said() != said);
+                trace.symptoms.retain(|symptom| !symptom.allowed.is_empty() && symptom.one.statement() != said);
             }
         }
     }
@@ -85,7 +85,7 @@ pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted:
 /// Returns the first values that are not numbers, in the stage in which most traces have them.
 fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
-    let agreeing = |one: &Explanation| ends().filter(|other| other.said() == one.said()).count();
+    let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
     let likeliest = ends().rev().max_by_key(|one| agreeing(one))?;
     let mut likeliest = likeliest.clone();
     if let About::NotFinite(found) = &mut likeliest.about
@@ -177,7 +177,7 @@ fn wrong_polynomials(
 
 /// Returns whether a trace that something explains needs this known mistake, too.
 fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
-    let said = next.said();
+    let said = next.statement();
     open.iter().any(|trace| trace.is_covered && trace.needs(&said))
 }
 
@@ -281,7 +281,7 @@ fn is_seen_again(open: &[OpenTrace], said: &str) -> bool {
 /// needs it in addition to a reported mistake, or two others, if there are several. Traces in which a stage looks wrong
 /// count only if nothing explains them, and one alone may follow from an earlier mistake, as missing polynomials do.
 fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
-    let said = next.said();
+    let said = next.statement();
     let naming = |is_covered: bool| {
         open.iter().filter(|trace| trace.is_covered == is_covered && trace.allows_wholly(&said)).count()
     };

@@ -30,12 +30,12 @@ pub use fosssim_findings::explanation::{
 use fosssim_findings::explanation::{about, fault, guess};
 pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
 pub use heads::several;
-pub use known::{can_show, known, reproduces, shows};
+pub use known::{can_show, find_known, reproduces, shows};
 pub use naming::is_named_in;
 pub use near::{PairTrait, pair_traits};
 pub use not_finite::not_finite;
-pub use ruled_out::refuted;
-pub use settled::{SettledTrace, settled};
+pub use ruled_out::refuted_keys;
+pub use settled::{SettledTrace, settle_trace};
 pub use written::{is_written, milestone};
 
 #[cfg(test)]

@@ -33,16 +33,16 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         let is_about = |one: &Explanation| one.subjects().iter().any(|subject| subjects.contains(subject));
         return explanations.iter().any(|one| is_about(one) && says_so(one));
     }
-    let said = mistake.said();
+    let said = mistake.statement();
     explanations.iter().any(|one| alternatives(one).contains_key(&said))
 }
 
-/// Returns the words ([`Explanation::said`]) that explain as much as this explanation of a trace: its own, those that
-/// it can't distinguish, and all that would make the same polynomials. Each comes with whether it explains everything
-/// that this explanation is about.
+/// Returns the words ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own, those
+/// that it can't distinguish, and all that would make the same polynomials. Each comes with whether it explains
+/// everything that this explanation is about.
 pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
-    let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.said(), one.is_settled())]);
+    let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_settled())]);
     all.extend(one.same_as.iter().filter(is_known).map(|key| (key.clone(), one.is_settled())));
     if one.is_complete() {
         all.extend(all_rows().filter(|row| is_in_other_words(one, row)).map(|row| (row.id.to_owned(), true)));

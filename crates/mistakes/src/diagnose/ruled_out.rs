@@ -14,7 +14,7 @@ const MOST_ENDS: usize = 6;
 const MOST_POLYNOMIALS: usize = 200_000;
 
 /// Keys that are named, of mistakes in code that a student of this milestone does not write.
-fn supplied(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
+fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
         for key in list.iter().flat_map(|one| alternatives(one).into_keys().chain([one.key.clone()])) {
@@ -46,7 +46,7 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
 /// integrator has a file of its own, so that only scenes with it show its mistakes. The key of values that are not
 /// numbers is included if the reported mistakes make such values themselves.
 #[must_use]
-pub fn refuted(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
+pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
     let is_asked = |scene: &Scene, key: &str| {
         let is_named = |list: &[Explanation]| list.iter().any(|one| alternatives(one).contains_key(key));
@@ -55,7 +55,7 @@ pub fn refuted(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], ri
     };
     let is_denied =
         |key: &str, work: &Cell<u64>| right.iter().any(|scene| is_asked(scene, key) && shows_within(scene, key, work));
-    let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied(whose, wrong));
+    let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied_keys(whose, wrong));
     loop {
         let likely = several(traces(), &refuted);
         // An explanation of unfinished work covers its stages.

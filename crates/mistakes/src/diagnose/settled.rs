@@ -15,7 +15,7 @@ pub struct SettledTrace {
 /// explains the trace, they replace the trace's own, which know less, but keep its counts and its example. Else the
 /// trace keeps its own, without those that are `refuted`.
 #[must_use]
-pub fn settled(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
+pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreed(own, one));
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
@@ -92,16 +92,16 @@ mod tests {
         let traces = [vec![alone.clone()], vec![short.clone()], vec![short.clone()]];
         let likely = several(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
-        let of_first = settled(&traces[0], &likely, &[]);
+        let of_first = settle_trace(&traces[0], &likely, &[]);
         assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
         let told = &of_first.explanations[0];
         assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
         // A trace that they do not explain keeps its own explanations.
         assert_eq!(
-            settled(std::slice::from_ref(&other), &likely, &[]),
+            settle_trace(std::slice::from_ref(&other), &likely, &[]),
             SettledTrace { explanations: vec![other], agreed: 0 }
         );
-        assert_eq!(settled(&[], &likely, &[]), SettledTrace::default());
+        assert_eq!(settle_trace(&[], &likely, &[]), SettledTrace::default());
     }
 
     #[test]
@@ -109,7 +109,7 @@ mod tests {
         let traces = [vec![named("pp-empty", &[], (3, 3))], vec![named("ph-empty", &[], (3, 3))]];
         let likely = several(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely[0].key, Explanation::UNFINISHED);
-        let of_second = settled(&traces[1], &likely, &[]);
+        let of_second = settle_trace(&traces[1], &likely, &[]);
         assert_eq!((of_second.agreed, of_second.explanations), (1, traces[1].clone()));
     }
 }

@@ -1,6 +1,6 @@
 //! The likely mistakes of one submission, which its scenes show together.
 
-use crate::diagnose::{is_named_in, settled, several};
+use crate::diagnose::{is_named_in, settle_trace, several};
 use fosssim_findings::{
     Hints, Visibility,
     explanation::Explanation,
@@ -136,7 +136,7 @@ pub fn settle(grade: &mut Grade) {
     let likely = if speak_together { likely_mistakes(grade) } else { Vec::new() };
     let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
-        let of_scene = settled(&scene.result.explanations, &likely, &grade.refuted);
+        let of_scene = settle_trace(&scene.result.explanations, &likely, &grade.refuted);
         (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);
     }
 }

@@ -86,7 +86,7 @@ impl Assignment {
 
     /// Returns the assignment with this key.
     #[must_use]
-    pub fn named(key: &str) -> Option<Self> {
+    pub fn from_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|assignment| assignment.key() == key)
     }
 }
@@ -239,8 +239,8 @@ mod tests {
     #[test]
     fn assignments_are_found_by_their_keys() {
         for assignment in Assignment::ALL {
-            assert_eq!(Assignment::named(assignment.key()), Some(assignment));
+            assert_eq!(Assignment::from_key(assignment.key()), Some(assignment));
         }
-        assert_eq!(Assignment::named("t9m9"), None);
+        assert_eq!(Assignment::from_key("t9m9"), None);
     }
 }

@@ -85,7 +85,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns the text of a required attribute.
     pub(super) fn text(&mut self, name: &str, what: &str) -> Option<String> {
-        let attribute = self.required(name, what)?;
+        let attribute = self.require(name, what)?;
         let text = self.decode(attribute)?.into_owned();
         if attribute.value.contains('\n') {
             self.warn(name, "has a line break, which vanishes", "the original joins lines without a space");
@@ -101,7 +101,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     /// Returns a name from a list.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        let attribute = self.required(name, &list(&names))?;
+        let attribute = self.require(name, &list(&names))?;
         let text = self.decode(attribute)?;
         if let Some((_, value)) = choices.iter().find(|(name, _)| *name == text) {
             return Some(*value);
@@ -116,7 +116,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns a required scalar.
     pub(super) fn scalar(&mut self, name: &str) -> Option<f64> {
-        let attribute = self.required(name, "a number")?;
+        let attribute = self.require(name, "a number")?;
         self.number(attribute)
     }
 
@@ -136,7 +136,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns a required whole number of 32 bits.
     pub(super) fn integer(&mut self, name: &str) -> Option<i32> {
-        let attribute = self.required(name, "a whole number")?;
+        let attribute = self.require(name, "a whole number")?;
         let text = self.one_line(attribute)?;
         match numbers::integer(&text) {
             Ok(value) => Some(value),
@@ -165,7 +165,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns a required truth value.
     pub(super) fn boolean(&mut self, name: &str) -> Option<bool> {
-        let attribute = self.required(name, "0 or 1")?;
+        let attribute = self.require(name, "0 or 1")?;
         let text = self.one_line(attribute)?;
         let text = text.trim_ascii();
         let help = match text.to_ascii_lowercase().as_str() {
@@ -198,7 +198,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Returns a required attribute. Its absence is not reported when it may be there, misspelt or unreadable.
-    fn required(&mut self, name: &str, what: &str) -> Option<&'d Attribute<'t>> {
+    fn require(&mut self, name: &str, what: &str) -> Option<&'d Attribute<'t>> {
         let attribute = self.raw(name);
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
             let (tag, number) = (self.tag, self.number);

@@ -77,8 +77,8 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
     let of_half_planes = reading.count("halfplane", "half-plane", half_planes.len());
     Some(SceneParts {
         forces: reading.forces(of_particles, of_edges),
-        integrator: reading.required("integrator", "type=\"...\" dt=\"...\"", integrator),
-        duration: reading.required("duration", "time=\"...\"", duration),
+        integrator: reading.require("integrator", "type=\"...\" dt=\"...\"", integrator),
+        duration: reading.require("duration", "time=\"...\"", duration),
         collision: reading.collision(),
         description: reading.optional("description", |fields| fields.text("text", "a text")),
         display: reading.display(of_particles, of_edges, of_half_planes),
@@ -137,7 +137,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 
     /// Returns a single element that must be there.
-    fn required<T>(
+    fn require<T>(
         &mut self,
         name: &str,
         attributes: &str,

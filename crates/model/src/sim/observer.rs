@@ -7,9 +7,10 @@ use serde::{Deserialize, Serialize};
 ///
 /// Order within one step: `begin_step`; then, for collision types with a handler, per detection pass `begin_pass`, a
 /// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
-/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronized` (continuous-time: at
-/// the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part: `begin_pass`
-/// .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last `end_step`.
+/// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronization` (continuous-time:
+/// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
+/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last
+/// `end_step`.
 ///
 /// An observer changes nothing. To continue the step with other values, it returns a [`Steer`].
 pub trait Observer {
@@ -22,7 +23,7 @@ pub trait Observer {
     /// Returns the wishes of this observer about the pass's pairs; called once or more in each pass. Unless it wants
     /// [`WantedPairs::Calls`], `detection` is not called, calls are not steered, and pairs are computed many at a time.
     #[inline]
-    fn wanted(&mut self) -> WantedPairs<'_> {
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Calls
     }
     /// Returns the steering part of this observer, if it has one.
@@ -39,7 +40,7 @@ pub trait Observer {
     /// Receives a response that was applied.
     fn impulse(&mut self, _impulse: &Impulse) {}
     /// Receives the synchronization point: the state of the mid record, before it may be replaced.
-    fn synchronized(&mut self, _state: &State) {}
+    fn synchronization(&mut self, _state: &State) {}
     /// Receives the impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
     /// Receives a zone that the rigid failsafe is about to move.
@@ -61,7 +62,7 @@ pub trait Steer {
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
-    /// Receives the synchronization point, after [`Observer::synchronized`]. The step continues with the values that
+    /// Receives the synchronization point, after [`Observer::synchronization`]. The step continues with the values that
     /// are written here; the geometric part of `hybrid` starts from the values that the answer names.
     fn synchronize(&mut self, _state: &mut State) -> Resume {
         Resume::Own
@@ -80,7 +81,7 @@ impl<S: Steer> Observer for Steering<S> {
 
 /// Passes the state of the synchronization point to an observer, and lets it steer.
 pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
-    observer.synchronized(state);
+    observer.synchronization(state);
     observer.steers().map_or(Resume::Own, |steer| steer.synchronize(state))
 }
 
@@ -98,7 +99,7 @@ pub enum WantedPairs<'a> {
 /// The observer that ignores all events.
 impl Observer for () {
     #[inline]
-    fn wanted(&mut self) -> WantedPairs<'_> {
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Nothing
     }
 }
@@ -113,7 +114,7 @@ macro_rules! go_on {
         fn hit(&mut $self, pair: Pair) { $($to.hit(pair);)+ }
         fn end_pass(&mut $self, pass: Pass, hits: usize) { $($to.end_pass(pass, hits);)+ }
         fn impulse(&mut $self, impulse: &Impulse) { $($to.impulse(impulse);)+ }
-        fn synchronized(&mut $self, state: &State) { $($to.synchronized(state);)+ }
+        fn synchronization(&mut $self, state: &State) { $($to.synchronization(state);)+ }
         fn zones(&mut $self, round: u32, zones: &[Zone<'_>]) { $($to.zones(round, zones);)+ }
         fn failsafe(&mut $self, round: u32, zone: &Zone<'_>) { $($to.failsafe(round, zone);)+ }
         fn end_step(&mut $self, step: u32, state: &State) { $($to.end_step(step, state);)+ }
@@ -124,8 +125,8 @@ macro_rules! go_on {
 impl<O: Observer + ?Sized> Observer for &mut O {
     go_on!(self => (**self));
     #[inline]
-    fn wanted(&mut self) -> WantedPairs<'_> {
-        (**self).wanted()
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
+        (**self).wanted_pairs()
     }
     #[inline]
     fn steers(&mut self) -> Option<&mut dyn Steer> {
@@ -137,11 +138,11 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 impl<A: Observer, B: Observer> Observer for (A, B) {
     go_on!(self => self.0, self.1);
     /// Returns the wish of one observer, if the other wants nothing.
-    fn wanted(&mut self) -> WantedPairs<'_> {
-        if matches!(self.1.wanted(), WantedPairs::Nothing) {
-            self.0.wanted()
-        } else if matches!(self.0.wanted(), WantedPairs::Nothing) {
-            self.1.wanted()
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
+        if matches!(self.1.wanted_pairs(), WantedPairs::Nothing) {
+            self.0.wanted_pairs()
+        } else if matches!(self.0.wanted_pairs(), WantedPairs::Nothing) {
+            self.1.wanted_pairs()
         } else {
             WantedPairs::Calls
         }

@@ -161,7 +161,7 @@ mod tests {
         fn steers(&mut self) -> Option<&mut dyn Steer> {
             Some(self)
         }
-        fn synchronized(&mut self, _state: &State) {
+        fn synchronization(&mut self, _state: &State) {
             self.lines.push("synchronize".to_owned());
         }
         fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {

@@ -90,7 +90,7 @@ impl Observer for EventCounts {
         }
     }
 
-    fn wanted(&mut self) -> WantedPairs<'_> {
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Nothing
     }
 

@@ -32,14 +32,14 @@ impl<W: Write> Recorder<W> {
 
     /// Returns the bytes and records written so far, including those in the buffer.
     #[must_use]
-    pub fn written(&self) -> WrittenTrace {
-        self.writer.written()
+    pub fn written_so_far(&self) -> WrittenTrace {
+        self.writer.written_so_far()
     }
 
     /// Returns whether writing has failed: there is no point in stepping on.
     #[must_use]
-    pub fn failed(&self) -> bool {
-        self.writer.failed()
+    pub fn has_failed(&self) -> bool {
+        self.writer.has_failed()
     }
 
     /// Writes the rest, flushes, and returns the stream.
@@ -70,7 +70,7 @@ impl<W: Write> Observer for Recorder<W> {
     }
 
     #[inline]
-    fn wanted(&mut self) -> WantedPairs<'_> {
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Bytes(&mut self.log.polynomials)
     }
 
@@ -82,7 +82,7 @@ impl<W: Write> Observer for Recorder<W> {
         self.log.impulse(impulse);
     }
 
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         if self.layout.records_per_step() == 2 {
             self.writer.record(state, &self.log);
         }
@@ -134,7 +134,7 @@ mod tests {
         let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
         recorder.begin_step(1);
         pass(&mut recorder, Stage::ContinuousTime);
-        recorder.synchronized(&state(1.0));
+        recorder.synchronization(&state(1.0));
         recorder.end_step(1, &state(1.0));
         let (bytes, written) = recorder.finish().unwrap();
         assert_eq!(bytes.len(), 40 + 2 * (40 + 36 + 28 + 4));
@@ -150,7 +150,7 @@ mod tests {
         let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
         recorder.begin_step(1);
         pass(&mut recorder, Stage::Impulses { round: 0 });
-        recorder.synchronized(&state(1.0));
+        recorder.synchronization(&state(1.0));
         pass(&mut recorder, Stage::Geometric { round: 0 });
         recorder.end_step(1, &state(2.0));
         let (bytes, _) = recorder.finish().unwrap();
@@ -183,7 +183,7 @@ mod tests {
                 expected.extend([0; 4]);
                 expected.extend((list.len() as u32 / 28).to_le_bytes());
                 expected.extend(&list);
-                assert_eq!(recorder.written().bytes, expected.len() as u64);
+                assert_eq!(recorder.written_so_far().bytes, expected.len() as u64);
             }
         }
         let (bytes, written) = recorder.finish().unwrap();
@@ -200,7 +200,7 @@ mod tests {
             recorder.begin_step(step);
             let polynomials = if step <= 2 { 3_500 } else { 40 };
             (0..polynomials).for_each(|_| recorder.log.polynomials.push(&[1.0, 2.0, 3.0]));
-            recorder.synchronized(&state(1.0));
+            recorder.synchronization(&state(1.0));
             recorder.end_step(step, &state(1.0));
             let kept = recorder.log.polynomials.all().len();
             assert!(kept < 400_000, "{kept} bytes are kept in step {step}");
@@ -215,7 +215,7 @@ mod tests {
             if step == 1 {
                 pass(&mut recorder, Stage::ContinuousTime);
             }
-            recorder.synchronized(&state(1.0));
+            recorder.synchronization(&state(1.0));
             recorder.end_step(step, &state(1.0));
         }
         let (bytes, _) = recorder.finish().unwrap();

@@ -104,7 +104,7 @@ impl<W: Write> Writer<W> {
 
     /// Returns the bytes and records written so far, including those in the buffer.
     #[must_use]
-    pub fn written(&self) -> WrittenTrace {
+    pub fn written_so_far(&self) -> WrittenTrace {
         WrittenTrace {
             records: self.written.records,
             bytes: self.written.bytes + (self.buffer.len() + self.listed) as u64,
@@ -113,7 +113,7 @@ impl<W: Write> Writer<W> {
 
     /// Returns whether writing has failed; later bytes are dropped then.
     #[must_use]
-    pub fn failed(&self) -> bool {
+    pub fn has_failed(&self) -> bool {
         self.error.is_some()
     }
 
@@ -200,7 +200,7 @@ mod tests {
         let mut writer = Writer::new(Vec::new(), layout());
         writer.write_frame(&frame());
         writer.write_frame(&frame());
-        assert_eq!(writer.written(), WrittenTrace { records: 2, bytes: 64 });
+        assert_eq!(writer.written_so_far(), WrittenTrace { records: 2, bytes: 64 });
         let (bytes, written) = writer.finish().unwrap();
         assert_eq!(bytes.len(), 64);
         assert_eq!(written, WrittenTrace { records: 2, bytes: 64 });
@@ -235,7 +235,7 @@ mod tests {
         for _ in 0..3 * PIECE / 32 {
             writer.write_frame(&frame());
         }
-        assert!(writer.failed());
+        assert!(writer.has_failed());
         assert_eq!(writer.finish().err().unwrap().to_string(), "no space left");
     }
 }

@@ -1,6 +1,6 @@
 //! A sheet of SVG that a plot is drawn on.
 use super::{Embedding, STYLE};
-use crate::{number::pixel, svg::escaped};
+use crate::{number::pixel, svg::escape};
 use std::fmt::Write;
 
 /// Widths of all sheets.
@@ -82,7 +82,7 @@ pub struct Sheet {
 impl Sheet {
     /// Creates a sheet of this height.
     pub fn new(height: f64, title: &str, description: &str, embedding: Embedding) -> Self {
-        let (title, description) = (escaped(title), escaped(description));
+        let (title, description) = (escape(title), escape(description));
         let (width, height) = (pixel(WIDTH), pixel(height));
         let is_styled = embedding == Embedding::Inline;
         let (space, font) = match is_styled {
@@ -123,7 +123,7 @@ impl Sheet {
     }
 
     /// Returns the attributes of a shape that is filled.
-    fn filled(&self, ink: Ink) -> String {
+    fn fill_attributes(&self, ink: Ink) -> String {
         let (class, color) = ink.class_and_color('f');
         format!(" class=\"{class}\"{}", self.attribute_unless_styled("fill", color))
     }
@@ -174,7 +174,7 @@ impl Sheet {
 
     /// Draws a filled rectangle.
     pub fn bar(&mut self, ink: Ink, [left, top]: [f64; 2], [width, height]: [f64; 2], opacity: f64) {
-        let ink = self.filled(ink);
+        let ink = self.fill_attributes(ink);
         let [left, top, width, height] = [left, top, width.max(0.5), height].map(pixel);
         let _ = writeln!(
             self.svg,
@@ -200,7 +200,7 @@ impl Sheet {
                 return;
             }
         };
-        let ink = self.filled(ink);
+        let ink = self.fill_attributes(ink);
         let _ = writeln!(self.svg, "<path{ink} d=\"{path}\"/>");
     }
 
@@ -223,7 +223,7 @@ impl Sheet {
             self.svg,
             "<text{class} x=\"{x}\" y=\"{y}\"{anchor}{}>{}</text>",
             self.attribute_unless_styled("fill", color),
-            escaped(text)
+            escape(text)
         );
     }
 

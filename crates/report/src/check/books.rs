@@ -1,7 +1,7 @@
 //! The verdicts of the rule books, a line each; the tables behind them are shown on request.
 use super::{Check, fair, follows};
 use crate::{
-    number::counted,
+    number::format_count,
     style::{Look, Style},
 };
 use fosssim_judge::{Overall, fair::cause};
@@ -20,7 +20,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     };
     let mut found: Vec<String> = Vec::new();
     let total = outcome.parity.findings.counts.total();
-    found.extend((total > 0).then(|| counted(total, "finding")));
+    found.extend((total > 0).then(|| format_count(total, "finding")));
     let follow = follows::count(outcome);
     found.extend((follow > 0).then(|| format!("among them {}", follows::describe(follow))));
     let parity = ("the original's rules", look, word, found.join(", "));

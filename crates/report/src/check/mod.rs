@@ -19,7 +19,7 @@ mod text;
 pub use asked::{is_wrong, no_verdict, not_read};
 pub use looks_like::{LOOKED_AT, looks_like};
 pub use steps::{LISTED, StepChoice, WrongSteps};
-pub use text::stopped;
+pub use text::describe_stop;
 pub(crate) use text::{headline, notes, problem};
 
 use super::{
@@ -64,7 +64,7 @@ pub struct Check<'a> {
 impl Check<'_> {
     /// Returns whether the trace is accepted.
     #[must_use]
-    pub fn accepted(&self) -> bool {
+    pub fn is_accepted(&self) -> bool {
         self.outcome.ruling(self.book()) == Ruling::Accepted
     }
 
@@ -76,7 +76,7 @@ impl Check<'_> {
 
     /// Returns whether the file is no trace at all; then the report says only that.
     pub(crate) fn is_no_trace(&self) -> bool {
-        self.looks_like.is_some() && !self.accepted()
+        self.looks_like.is_some() && !self.is_accepted()
     }
 
     /// Returns the difference of the two rule books: the book that accepts the trace.
@@ -113,8 +113,8 @@ impl Check<'_> {
     pub fn github(&self) -> String {
         let mut text = String::new();
         let title = format!("{}: {}", self.trace, self.verdict());
-        if !self.accepted() {
-            let place = self.outcome.stop_of(self.book()).map(|stop| stopped(&stop, self.outcome));
+        if !self.is_accepted() {
+            let place = self.outcome.stop_of(self.book()).map(|stop| describe_stop(&stop, self.outcome));
             let first = first::first(self).map(|first| first.to_string());
             let likely = explain::sentence(self.explanations).filter(|_| !first::is_other_scene(self));
             let words: Vec<String> = [Some(text::headline(self)), place, first, likely].into_iter().flatten().collect();

@@ -1,6 +1,6 @@
 //! The wrong steps of a trace, one by one: gathered while it is judged, and shown with expected and actual values.
 use super::super::{
-    number::{count, counted},
+    number::{count, format_count},
     style::{Look, Style},
 };
 use super::{Check, divergence, fair_view::CountedView};
@@ -140,7 +140,7 @@ pub(super) fn all(check: &Check<'_>) -> bool {
 }
 
 /// Returns the requested steps, each with its findings; none if no step was requested.
-fn shown<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
+fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
     let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
     match &check.steps.shown {
         StepChoice::None => None,
@@ -156,11 +156,11 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
         Some(step) => block(check, step, style),
         None => format!("{}\n", style.paint(Look::Strong, &nothing_wrong(check, number))),
     };
-    let mut text = shown(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
+    let mut text = requested_steps(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
     let shown = steps.kept.iter().filter(|step| step.number > 0).count() as u64;
     if check.steps.shown == StepChoice::All && shown < wrong {
-        text += &format!("\n{} more are wrong; --step N shows any of them\n", counted(wrong - shown, "step"));
+        text += &format!("\n{} more are wrong; --step N shows any of them\n", format_count(wrong - shown, "step"));
     }
     (!text.is_empty()).then_some(text)
 }
@@ -183,8 +183,10 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
     let findings = step.firsts.len() as u64 + step.more.total();
     let frame = step.firsts.first().map_or(0, |first| first.frame);
     let heading = match step.number {
-        0 => format!("First record: {}", counted(findings, "finding")),
-        number => format!("Step {number} of {}, frame {frame}: {}", check.outcome.steps, counted(findings, "finding")),
+        0 => format!("First record: {}", format_count(findings, "finding")),
+        number => {
+            format!("Step {number} of {}, frame {frame}: {}", check.outcome.steps, format_count(findings, "finding"))
+        }
     };
     let mut text = style.paint(Look::Strong, &heading) + "\n";
     for finding in &step.firsts {
@@ -214,5 +216,5 @@ pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let counted = |step: &Step| CountedView::all(book, &step.firsts, |kind| 1 + step.more.get(kind));
     let view =
         |(step, found): (u32, Option<&Step>)| WrongStepView { step, findings: found.map(counted).unwrap_or_default() };
-    Some(shown(check, &steps)?.into_iter().map(view).collect())
+    Some(requested_steps(check, &steps)?.into_iter().map(view).collect())
 }

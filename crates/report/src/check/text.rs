@@ -2,7 +2,7 @@
 use super::{
     super::{
         explain,
-        number::{count, counted, general},
+        number::{count, format_count, general},
         style::{Look, Style},
         table::{Align, Cell, Table},
         words,
@@ -86,13 +86,13 @@ fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
     let mut lines = explain::lines(&shown, style);
     if !more.is_empty() {
-        lines.push(format!("and {} (--tables)", counted(more.len() as u64, "less likely explanation")));
+        lines.push(format!("and {} (--tables)", format_count(more.len() as u64, "less likely explanation")));
     }
     section("Likely cause", "  ", &lines, style)
 }
 
 fn head(check: &Check<'_>, style: Style) -> String {
-    let look = if check.accepted() { Look::Good } else { Look::Bad };
+    let look = if check.is_accepted() { Look::Good } else { Look::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
     if check.is_no_trace() {
         return format!("{verdict}: {} {}\n", check.trace, headline(check));
@@ -129,7 +129,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
                 Some(Stop::Step(_)) => "the original would compute without end",
                 _ => "the trace could not be read on",
             };
-            format!("judged {judged} of {}, then {end}", counted(outcome.steps.into(), "step"))
+            format!("judged {judged} of {}, then {end}", format_count(outcome.steps.into(), "step"))
         }
     };
     match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
@@ -166,7 +166,7 @@ fn describe_damage(outcome: &Outcome) -> String {
 
 /// Returns the place at which judging a trace ended, and the reason: one line.
 #[must_use]
-pub fn stopped(stop: &Stop, outcome: &Outcome) -> String {
+pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = problem(stop, outcome);
     let what = match stop {
         Stop::Trace { .. } => "the trace can't be read any further at",
@@ -259,7 +259,8 @@ fn share_cell(value: f64, bound: f64) -> String {
 }
 
 fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
-    let heading = format!("Findings: {} in {}", count(account.counts.total()), counted(account.wrong_steps, "step"));
+    let heading =
+        format!("Findings: {} in {}", count(account.counts.total()), format_count(account.wrong_steps, "step"));
     let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::describe_kinds(account, style));
     if follow > 0 {
         text += &format!("  among them {}\n", follows::describe(follow));

@@ -247,7 +247,7 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
 
 #[test]
 fn a_stopped_grading_has_points_in_no_format() {
-    let grades = [samples::stopped()];
+    let grades = [samples::stopped_grade()];
     let json = |format: Format| -> serde_json::Value { serde_json::from_str(&format.render(&grades)).expect("JSON") };
     let own = json(Format::Json);
     assert_valid("grade.schema.json", &own.to_string());

@@ -1,6 +1,6 @@
 //! The changes of a submission since an earlier grading, in words.
-use super::{phrases::some, points, reached};
-use crate::{number::counted, style::Look};
+use super::{format_points, phrases::some, points};
+use crate::{number::format_count, style::Look};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
 /// The greatest number of scenes that are named.
@@ -27,17 +27,17 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let named = kinds.into_iter().filter(|(_, _, names)| !names.is_empty());
     let mut lines: Vec<(Look, String)> = named
         .map(|(look, verb, names)| {
-            (look, format!("{} {verb}: {}", counted(names.len() as u64, "scene"), some(&names, NAMED)))
+            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), some(&names, NAMED)))
         })
         .collect();
     if lines.is_empty() {
         lines.push((Look::Faint, "no scene changed".to_owned()));
     }
     let then = match points(changes.max_points) == points(grade.max_points) {
-        true => reached(changes.points),
-        false => format!("{} of {}", reached(changes.points), points(changes.max_points)),
+        true => format_points(changes.points),
+        false => format!("{} of {}", format_points(changes.points), points(changes.max_points)),
     };
-    lines.insert(0, (Look::Strong, format!("{then} points before, {} now", reached(grade.points))));
+    lines.insert(0, (Look::Strong, format!("{then} points before, {} now", format_points(grade.points))));
     lines
 }
 

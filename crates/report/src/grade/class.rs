@@ -1,8 +1,8 @@
 //! A class in numbers: how many points, which scenes few have right, which mistakes many make.
-use super::{likely_mistakes, phrases::some, points, shortened};
+use super::{likely_mistakes, phrases::some, points, shorten_name};
 use crate::foreign::one_line;
 use crate::{
-    number::counted,
+    number::format_count,
     style::{Look, Style},
     table::{Align, Table},
     words,
@@ -36,10 +36,10 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
         }
         text += &table.render(style);
         if scenes.len() > most {
-            let _ = writeln!(text, "  and {}", counted((scenes.len() - most) as u64, "more scene"));
+            let _ = writeln!(text, "  and {}", format_count((scenes.len() - most) as u64, "more scene"));
         }
         if whole > 0 {
-            let _ = writeln!(text, "  {} accepted for all", counted(whole as u64, "scene"));
+            let _ = writeln!(text, "  {} accepted for all", format_count(whole as u64, "scene"));
         }
     }
     let mistakes = frequent(grades);
@@ -48,7 +48,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
         let mut table = Table::new([Align::Right, Align::Left]);
         for SharedMistake { mistake, members } in mistakes.iter().take(most) {
             let what = words::explanation::what_or(mistake);
-            table.row([counted(members.len() as u64, "submission").into(), one_line(&what).into()]);
+            table.row([format_count(members.len() as u64, "submission").into(), one_line(&what).into()]);
         }
         text += &table.render(style);
     }
@@ -56,7 +56,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     if !same.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "The same program, byte for byte"));
         for members in &same {
-            let names: Vec<String> = members.iter().map(|&number| shortened(&grades[number].submission)).collect();
+            let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
             let _ = writeln!(text, "  {}", some(&names, most));
         }
     }
@@ -122,7 +122,7 @@ impl ClassFigures {
 /// Returns `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median 71, from 0 to 100 of 100 points`.
 fn head(grades: &[Grade]) -> String {
     let figures = ClassFigures::from_grades(grades);
-    let all = counted(figures.submissions as u64, "submission");
+    let all = format_count(figures.submissions as u64, "submission");
     let mut text = format!("{all}, {} ran, {} accepted", figures.ran, figures.accepted);
     if let Some(reached) = figures.points {
         let ([mean, middle, lowest, highest], most) = (reached.map(points), points(figures.max_points));
@@ -179,7 +179,7 @@ pub(crate) fn frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     for (number, grade) in grades.iter().enumerate() {
         for (mistake, _) in likely_mistakes(grade) {
             let new = || SharedMistake { mistake: mistake.clone(), members: Vec::new() };
-            found.entry(mistake.said()).or_insert_with(new).members.push(number);
+            found.entry(mistake.statement()).or_insert_with(new).members.push(number);
         }
     }
     let mut sorted: Vec<_> = found.into_values().collect();
@@ -200,7 +200,7 @@ mod tests {
 
     #[test]
     fn a_class_is_summed_up() {
-        let grades = [samples::good(), samples::bad(), samples::fault(), samples::stopped()];
+        let grades = [samples::good(), samples::bad(), samples::fault(), samples::stopped_grade()];
         insta::assert_snapshot!(class(&grades, 3, Style::Plain));
         assert!(class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
     }
@@ -228,7 +228,7 @@ mod tests {
 
     #[test]
     fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
-        let grades = [samples::fault(), samples::stopped()];
+        let grades = [samples::fault(), samples::stopped_grade()];
         assert_eq!(hardest(&grades), (Vec::new(), 1));
     }
 }

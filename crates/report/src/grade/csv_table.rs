@@ -50,7 +50,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     }
     let rows = grades.iter().map(|grade| {
         let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
-        let mistakes: Vec<String> = grade.located.iter().map(words::located).chain(mistakes).collect();
+        let mistakes: Vec<String> = grade.located.iter().map(words::describe_located).chain(mistakes).collect();
         let mut row = vec![
             safe(&grade.submission),
             grade.verdict.name().to_owned(),

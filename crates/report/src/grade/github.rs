@@ -1,9 +1,10 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
 use super::{
-    super::explain, change_lines, difference, head_lines, no_points, phrases::NOT_GRADED, points, reached, wrong_first,
+    super::explain, change_lines, difference, format_points, head_lines, no_points, phrases::NOT_GRADED, points,
+    wrong_first,
 };
 use crate::annotation::{annotation, annotation_of};
-use crate::foreign::{one_line, printed};
+use crate::foreign::{clean_output, one_line};
 use crate::words;
 use fosssim_findings::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
@@ -17,7 +18,7 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
         }
         if let Some(build) = grade.failed_build() {
             let title = format!("{}: {}", grade.submission, words::build(&build.end));
-            let words: String = printed(&build.output).chars().take(4000).collect();
+            let words: String = clean_output(&build.output).chars().take(4000).collect();
             text += &annotation_of("error", &title, words.lines());
         }
         // GitHub shows the first ten, so the most important ones come first, each only once.
@@ -76,7 +77,7 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
             if grade.unfit().is_none() {
                 let _ = writeln!(text, "{}\n", cell(&words::build(&build.end)));
             }
-            for line in printed(&build.output).lines().take(40) {
+            for line in clean_output(&build.output).lines().take(40) {
                 let _ = writeln!(text, "    {}", one_line(line));
             }
             text.push('\n');
@@ -93,7 +94,7 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
                 .map(|words| cell(&words))
                 .collect();
             let words = words.join("; ");
-            let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, reached(scene.points));
+            let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, format_points(scene.points));
         }
         text.push('\n');
     }

@@ -1,7 +1,7 @@
 //! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
 use super::{super::explain, difference, head_lines, points, see_above, speed_words};
-use crate::foreign::{plain, printed};
-use crate::{number::counted, style::Style, view::document, words};
+use crate::foreign::{clean_output, plain};
+use crate::{number::format_count, style::Style, view::document, words};
 use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
     speed::{SpeedGrade, SpeedSource},
@@ -121,7 +121,7 @@ fn overall(grade: &Grade) -> String {
         None => out_of_time(grade),
     }];
     if let Some(build) = grade.failed_build() {
-        lines.push(format!("{}\n{}", plain(&words::build(&build.end)), printed(&build.output)));
+        lines.push(format!("{}\n{}", plain(&words::build(&build.end)), clean_output(&build.output)));
     } else {
         // A fault of the upload itself reveals no scene.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
@@ -136,7 +136,7 @@ fn out_of_time(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(
         "Grading was stopped because its time was up; {missing} of {} have no result, so there is no score yet.",
-        counted(grade.scenes().count() as u64, "scene")
+        format_count(grade.scenes().count() as u64, "scene")
     );
     let scenes = grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene)));
     let longest = scenes.max_by_key(|(_, scene)| scene.measured.wall);
@@ -160,7 +160,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
     lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
-        lines.push(format!("The program's standard error:\n{}", printed(&scene.stderr)));
+        lines.push(format!("The program's standard error:\n{}", clean_output(&scene.stderr)));
     }
     lines.join("\n")
 }

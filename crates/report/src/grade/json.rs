@@ -1,6 +1,6 @@
 //! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
 use super::{super::explain::ExplanationView, phrases::NOT_GRADED, speed_words};
-use crate::foreign::{plain, printed};
+use crate::foreign::{clean_output, plain};
 use crate::{
     check::CauseView,
     smallest::SmallestView,
@@ -130,7 +130,7 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct LocatedView from found: LocatedFailure {
         /// The whole in words.
-        text: String = plain(&words::located(found)),
+        text: String = plain(&words::describe_located(found)),
         /// Scenes in which the program fails.
         failed: usize = found.failed,
         /// The number of these scenes that have the contents.
@@ -153,7 +153,7 @@ view! {
         /// The way it ended, in words.
         end: String = plain(&words::build(&build.end)),
         /// The compiler's output, cut where it is long.
-        output: String = printed(&build.output),
+        output: String = clean_output(&build.output),
     }
 }
 
@@ -253,9 +253,9 @@ view! {
         /// The most memory that it used; null if that is not known.
         memory_bytes: Option<u64> = scene.measured.memory,
         /// The program's output, cut where it is long.
-        stdout: String = printed(&scene.stdout),
+        stdout: String = clean_output(&scene.stdout),
         /// The program's standard error, likewise.
-        stderr: String = printed(&scene.stderr),
+        stderr: String = clean_output(&scene.stderr),
         /// Whether the result was taken from an earlier run.
         cached: bool = scene.cached,
     }
@@ -264,11 +264,11 @@ view! {
 /// Renders all grades in one document.
 pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let (grades, passed_over) =
-        (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(passed).collect());
+        (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(with_plain_words).collect());
     document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
 }
 
-fn passed(entry: &PassedOver) -> PassedOver {
+fn with_plain_words(entry: &PassedOver) -> PassedOver {
     PassedOver { name: plain(&entry.name), why: plain(&entry.why) }
 }
 
@@ -277,7 +277,7 @@ fn passed(entry: &PassedOver) -> PassedOver {
 pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
     let passed_over = passed_over.iter().map(|entry| {
-        let PassedOver { name, why } = passed(entry);
+        let PassedOver { name, why } = with_plain_words(entry);
         let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
         serde_json::to_string(&line)
     });

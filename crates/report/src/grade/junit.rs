@@ -1,6 +1,6 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
 use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, wrong_first};
-use crate::foreign::{plain, printed};
+use crate::foreign::{clean_output, plain};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -49,7 +49,7 @@ fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     status.set_type(grade.verdict.name());
     status.set_message(plain(unfit));
     if let Some(build) = &grade.build {
-        status.set_description(printed(&build.output));
+        status.set_description(clean_output(&build.output));
     }
     let mut case = TestCase::new("submission", status);
     case.set_classname(plain(&grade.submission));
@@ -71,7 +71,7 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             let mut description = words::details(scene);
             description.extend(explain::lines(&scene.settled, Style::Plain));
             if let Some(build) = grade.failed_build() {
-                description.extend([words::build(&build.end), printed(&build.output)]);
+                description.extend([words::build(&build.end), clean_output(&build.output)]);
             }
             if !description.is_empty() {
                 status.set_description(plain(&description.join("\n")));
@@ -83,10 +83,10 @@ fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
     case.set_classname(plain(&grade.submission));
     case.set_time(scene.measured.wall);
     if !scene.stdout.is_empty() {
-        case.set_system_out(printed(&scene.stdout));
+        case.set_system_out(clean_output(&scene.stdout));
     }
     if !scene.stderr.is_empty() {
-        case.set_system_err(printed(&scene.stderr));
+        case.set_system_err(clean_output(&scene.stderr));
     }
     case
 }

@@ -34,11 +34,11 @@ pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
 pub use passed_over::{not_graded, warn_of};
-pub use phrases::{difference, head_lines, likely_mistakes, no_points, points, reached, score};
+pub use phrases::{difference, format_points, head_lines, likely_mistakes, no_points, points, score};
 use phrases::{see_above, wrong_first};
 pub(crate) use phrases::{worth, wrong_scenes};
 pub(crate) use speed::speed_words;
-pub use text::{Advice, Text, TextDetail, extra, shortened, table as text_table};
+pub use text::{Advice, Text, TextDetail, extra, shorten_name, table as text_table};
 
 #[cfg(test)]
 pub(crate) mod samples;

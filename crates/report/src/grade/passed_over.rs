@@ -1,5 +1,5 @@
 //! The entries of a class's folder that are no submissions, in every format: each list names what is missing in it.
-use super::shortened;
+use super::shorten_name;
 use crate::{
     foreign::one_line,
     style::{Look, Style},
@@ -24,7 +24,7 @@ pub fn not_graded(grades: &[Grade], passed_over: &[PassedOver], style: Style) ->
     }
     let mut table = Table::new([Align::Left, Align::Left]);
     for PassedOver { name, why } in passed_over {
-        table.row([shortened(&one_line(name)).into(), one_line(why).into()]);
+        table.row([shorten_name(&one_line(name)).into(), one_line(why).into()]);
     }
     format!("{}\n{}", style.paint(Look::Strong, "Not graded"), table.render(style))
 }

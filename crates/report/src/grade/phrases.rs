@@ -1,5 +1,5 @@
 //! The sentences about a grade that several formats have in common.
-use crate::{foreign::one_line, number::counted, words};
+use crate::{foreign::one_line, number::format_count, words};
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 pub use fosssim_mistakes::together::likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
@@ -24,7 +24,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         let worth = worth(grade, &mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
         format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
-    let located = grade.located.as_ref().map(words::located);
+    let located = grade.located.as_ref().map(words::describe_located);
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
@@ -42,7 +42,7 @@ pub(crate) fn note(grade: &Grade, mistake: &Explanation) -> String {
 /// Returns the number of scenes for which an explanation is searched, with their noun.
 pub(crate) fn wrong_scenes(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
-    counted(wrong.count() as u64, "wrong scene")
+    format_count(wrong.count() as u64, "wrong scene")
 }
 
 /// Returns the text for a scene whose reason is that of the whole submission.
@@ -96,7 +96,7 @@ pub fn score(reached: f64, most: f64) -> String {
 
 /// Returns the points, which may be missing: if the grader failed or was stopped, there is no zero.
 #[must_use]
-pub fn reached(value: Option<f64>) -> String {
+pub fn format_points(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), points)
 }
 
@@ -112,7 +112,7 @@ pub fn no_points(grade: &Grade) -> Option<String> {
         if missing == 0 {
             return Some("no points yet: the time of the program could not be measured".to_owned());
         }
-        Some(format!("no points yet: {missing} of {} not run", counted(all as u64, "scene")))
+        Some(format!("no points yet: {missing} of {} not run", format_count(all as u64, "scene")))
     }
 }
 

@@ -1,7 +1,7 @@
 //! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours and for uploads without a
 //! program that can be run, which charge no attempt.
 use super::{super::explain, difference, head_lines, score, see_above, speed_words};
-use crate::foreign::{one_line, plain, printed};
+use crate::foreign::{clean_output, one_line, plain};
 use crate::{style::Style, view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
@@ -102,7 +102,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             .iter()
             .map(|warning| format!("warning: {warning}"))
             .chain(head)
-            .chain(build.map(|build| format!("{}\n{}", words::build(&build.end), printed(&build.output))))
+            .chain(build.map(|build| format!("{}\n{}", words::build(&build.end), clean_output(&build.output))))
             .map(|text| cut(&text))
             .collect::<Vec<_>>()
             .join("\n"),

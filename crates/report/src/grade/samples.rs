@@ -146,7 +146,7 @@ pub(crate) fn unfit() -> Grade {
 }
 
 /// Returns a grade that was stopped while its second scene ran.
-pub(crate) fn stopped() -> Grade {
+pub(crate) fn stopped_grade() -> Grade {
     let mut running = scene("Detection/b", Verdict::NotRun, "the program was stopped by the grader");
     running.measured.wall = Duration::from_secs(14);
     let scenes =

@@ -1,6 +1,6 @@
 //! Points for speed, in a sentence.
 use super::points;
-use crate::number::counted;
+use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
 /// Returns the words on a group's speed: the points, and where they come from.
@@ -31,7 +31,7 @@ fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     } else {
         format!("which is {low} to {high} points")
     };
-    let rounds = counted(runs.into(), "round");
+    let rounds = format_count(runs.into(), "round");
     let line = format!("all up to {}, none from {}", marking.full_at, marking.none_at);
     let spread = format!("{rounds} gave {least:.2} to {most:.2}, {sure}");
     format!("{ratio:.2} times the reference's processor time; {spread} ({line})")

@@ -1,7 +1,7 @@
 //! A detection call on a page: curves, intervals, coefficients.
 use super::{
-    markup::{compared, number},
-    rendered,
+    markup::{mark_difference, number},
+    render_template,
 };
 use crate::{describe::pair_key, detect::Detect, number::general};
 use askama::Template;
@@ -19,7 +19,7 @@ use fosssim_render::{
 /// Renders a call under its name, folded unless it is open from the start.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let (pair, pass) = (PairWords(call.pair), PassWords(call.pass));
-    rendered(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
+    render_template(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
 }
 
 /// A call and its name.
@@ -47,7 +47,7 @@ struct Row {
 
 impl CallContent<'_> {
     /// Returns the polynomials of the trace.
-    fn logged(&self) -> &[Vec<f64>] {
+    fn logged_polynomials(&self) -> &[Vec<f64>] {
         match &self.call.logged {
             CallLog::These(logged) => logged,
             CallLog::Nothing | CallLog::Unknown => &[],
@@ -59,7 +59,7 @@ impl CallContent<'_> {
     }
 
     /// Draws the expected curves.
-    fn expected(&self, study: &Study) -> String {
+    fn draw_expected(&self, study: &Study) -> String {
         detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), Embedding::Inline)
     }
 
@@ -110,7 +110,7 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
     let curves: Vec<PlottedPolynomial<'_>> =
-        own.map(|((curve, own), set)| plotted(curve.role.to_string(), own, set)).collect();
+        own.map(|((curve, own), set)| plot_polynomial(curve.role.to_string(), own, set)).collect();
     if sets.iter().all(|set| is_flat(set)) {
         return String::new();
     }
@@ -122,7 +122,7 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
 }
 
 /// Returns the curve of a polynomial that is positive on this set.
-fn plotted<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
+fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
     PlottedPolynomial { name, coefficients, zeros: ends(positive), positive }
 }
 
@@ -169,7 +169,10 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     if is_flat(set) && is_flat(&own) {
         return String::new();
     }
-    let curves = [plotted(format!("{role}, expected"), expected, set), plotted(format!("{role}, yours"), logged, &own)];
+    let curves = [
+        plot_polynomial(format!("{role}, expected"), expected, set),
+        plot_polynomial(format!("{role}, yours"), logged, &own),
+    ];
     let title = format!("Step {step}: {role}, expected and yours");
     let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
@@ -188,7 +191,7 @@ fn rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
             let missing = nothing || own.is_empty() && !logged.is_empty();
             let differs = missing || !own.is_empty() && marks.get(power).copied().unwrap_or(true);
             let (right, yours) = match (at(expected), at(own)) {
-                (Some(expected), Some(own)) => compared(factor * expected, own, differs),
+                (Some(expected), Some(own)) => mark_difference(factor * expected, own, differs),
                 (expected, _) if logged.is_empty() && !nothing => (cell(expected), "not known".to_owned()),
                 (expected, own) => (cell(expected), cell(own)),
             };

@@ -53,7 +53,7 @@ impl Card {
 
     /// Returns the card as it is kept.
     #[must_use]
-    pub fn kept(&self) -> String {
+    pub fn to_kept(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
@@ -90,7 +90,7 @@ impl Card {
     }
 
     /// Returns the motions, rounded.
-    pub(super) fn rounded(&self, key: &str) -> String {
+    pub(super) fn round_motions(&self, key: &str) -> String {
         self.rounded.replace(KEY, key)
     }
 }

@@ -1,9 +1,9 @@
 //! One judged trace on a page.
 use super::{
     Case, call, data, document,
-    markup::{self, compared, formula, text},
+    markup::{self, formula, mark_difference, text},
     packed::Precision,
-    rendered, script, strip,
+    render_template, script, strip,
 };
 use crate::{
     check::{
@@ -47,16 +47,16 @@ impl Case<'_> {
     /// Renders the case as a page's own content.
     fn html(&self, key: &str) -> String {
         let check = &self.check;
-        let look = match (check.accepted(), check.difference()) {
+        let look = match (check.is_accepted(), check.difference()) {
             (true, None) => "good",
             (true, Some(_)) => "warn",
             (false, _) => "bad",
         };
         let explanations = if is_other_scene(check) { &[][..] } else { check.explanations };
-        let mistakes = self.stopped() + &mistakes(explanations, self.first().is_some());
+        let mistakes = self.describe_stop() + &mistakes(explanations, self.first().is_some());
         let data = self.evidence.map(|evidence| data::blocks(self, evidence, key, Precision::AsRoomAllows));
         let content = self.trace_part(key, 1, &mistakes) + &data.unwrap_or_default();
-        rendered(&CaseContent { check, key, look, content })
+        render_template(&CaseContent { check, key, look, content })
     }
 
     /// Returns the finding that is shown first: of the book that counts, or of the other one where that has none.
@@ -67,7 +67,7 @@ impl Case<'_> {
     /// Renders the part about the trace, below a heading of the given depth: the motion next to its cause and the first
     /// wrong values, and below all that needs more room.
     pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
-        rendered(&TraceContent { case: self, check: &self.check, key, depth, mistakes })
+        render_template(&TraceContent { case: self, check: &self.check, key, depth, mistakes })
     }
 
     /// Returns the motion, where there is one.
@@ -76,7 +76,7 @@ impl Case<'_> {
     }
 
     /// Returns where the trace can't be followed any further, the reason, and the place to check.
-    fn stopped(&self) -> String {
+    fn describe_stop(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
         let (place, message, advice) = problem(&stop, outcome);
@@ -226,14 +226,14 @@ fn subject(finding: &Finding) -> String {
 /// Returns two values side by side as markup: in one notation, and marked from the first digit that differs.
 fn cells(row: &Row) -> (String, String) {
     match (row.expected, row.actual) {
-        (Value::Number(expected), Value::Number(actual)) => compared(expected, actual, row.differs),
+        (Value::Number(expected), Value::Number(actual)) => mark_difference(expected, actual, row.differs),
         // A value that stands alone is no longer than others.
-        (expected, actual) => (alone(expected), alone(actual)),
+        (expected, actual) => (format_value(expected), format_value(actual)),
     }
 }
 
 /// Returns a value without another to compare it with; the title has all its digits.
-fn alone(value: Value) -> String {
+fn format_value(value: Value) -> String {
     match value {
         Value::Number(number) => markup::number(number),
         other => other.exact(),
@@ -243,7 +243,7 @@ fn alone(value: Value) -> String {
 /// Renders explanations, each in a box. An example is left out where the first wrong values are shown next to them.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
     let parts = explanations.iter().map(|one| ExplanationParts::new(one, Style::ColorAndSigns));
-    rendered(&Mistakes { mistakes: parts.collect(), is_shown_beside })
+    render_template(&Mistakes { mistakes: parts.collect(), is_shown_beside })
 }
 
 /// Returns the first sentence, which is the heading, and its general rule.

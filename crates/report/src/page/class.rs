@@ -4,13 +4,13 @@ use super::{
     graded::key,
     histogram,
     markup::{count_scenes, data, note},
-    rendered,
+    render_template,
     smallest::{parts, pre},
 };
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, example, frequent, hardest, likely_mistakes, never_ran, points, reached,
+        ClassFigures, SharedMistake, example, format_points, frequent, hardest, likely_mistakes, never_ran, points,
         same_programs,
     },
     smallest::title,
@@ -52,7 +52,7 @@ impl ClassPage<'_> {
             mistakes: frequent(self.grades),
             is_compared: self.grades.iter().any(|grade| grade.before.is_some()),
         };
-        document(&format!("Class: {}", suite(self.grades)), &rendered(&content), SCRIPT)
+        document(&format!("Class: {}", suite(self.grades)), &render_template(&content), SCRIPT)
     }
 }
 
@@ -107,7 +107,7 @@ impl ClassContent<'_> {
     }
 
     /// Returns the numbers of the mistakes of a submission, as filters know them.
-    fn made(&self, number: usize) -> String {
+    fn mistake_numbers(&self, number: usize) -> String {
         let made = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
         made.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
     }
@@ -190,7 +190,7 @@ fn accepted_of(grade: &Grade) -> usize {
 /// Returns the likely mistakes of a submission, or why it is not accepted.
 fn reason(grade: &Grade) -> String {
     let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
-    let likely: Vec<String> = grade.located.iter().map(words::located).chain(likely).collect();
+    let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
     if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") }
 }
 
@@ -267,7 +267,7 @@ fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
 /// Returns the class in a few numbers.
 fn figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
-    let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(reached);
+    let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_points);
     let unsolved = hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     let rows = [
         (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),

@@ -4,7 +4,7 @@ use super::{
     case::mistakes,
     document,
     graded::{self, key},
-    rendered, script, smallest,
+    render_template, script, smallest,
 };
 use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::first_divergence};
 use askama::Template;
@@ -44,7 +44,7 @@ impl ExplainedPage<'_> {
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
         let content = ExplainedContent { page: self, title: &title, look, wrong };
-        document(&title, &rendered(&content), script())
+        document(&title, &render_template(&content), script())
     }
 }
 

@@ -4,17 +4,17 @@ use super::{
     case::mistakes,
     document,
     markup::{count_scenes, note, text},
-    rendered,
+    render_template,
     room::{self, OUTPUTS, Room},
     script, smallest,
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        by_cause, change_lines, difference, example, extra, is_told, likely_mistakes, no_points, points, reached,
+        by_cause, change_lines, difference, example, extra, format_points, is_told, likely_mistakes, no_points, points,
         score, speed_words, worth, wrong_scenes,
     },
-    number::counted,
+    number::format_count,
     words,
 };
 use askama::Template;
@@ -77,7 +77,7 @@ impl GradePage<'_> {
         };
         // The viewer is most of a page without cards.
         let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
-        document(&format!("{}: {}", grade.submission, grade.verdict.name()), &rendered(&content), script)
+        document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
     }
 }
 
@@ -151,14 +151,14 @@ impl GradeContent<'_> {
 }
 
 /// Returns the common properties of scenes in which a program fails.
-pub(super) fn located(found: &LocatedFailure) -> String {
-    let words = text(&one_line(&words::located(found)));
+pub(super) fn render_located(found: &LocatedFailure) -> String {
+    let words = text(&one_line(&words::describe_located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
 /// Returns the book that counts.
 fn books(grade: &Grade) -> String {
-    let other = counted(grade.differing() as u64, "scene");
+    let other = format_count(grade.differing() as u64, "scene");
     match (grade.rules, grade.differing()) {
         (fosssim_judge::Rules::Parity, _) => "by the original's rules".to_owned(),
         (fosssim_judge::Rules::Fair, 0) => "by the fair rules".to_owned(),
@@ -178,7 +178,7 @@ fn score_or_why(grade: &Grade) -> String {
 
 /// Returns the output of a build.
 fn printed_by(build: &Build) -> String {
-    printed("What it printed", &build.output, &mut OUTPUTS.clone())
+    render_output("What it printed", &build.output, &mut OUTPUTS.clone())
 }
 
 /// Returns who sees groups of this kind.
@@ -213,11 +213,11 @@ impl<'a> Article<'a> {
         };
         let motion = match (card, room) {
             (Some(card), Room::Exact) => card.data(&key),
-            (Some(card), Room::Rounded) => card.rounded(&key),
+            (Some(card), Room::Rounded) => card.round_motions(&key),
             _ => String::new(),
         };
-        let outputs = printed("Standard output", &scene.stdout, room_of_outputs)
-            + &printed("Standard error", &scene.stderr, room_of_outputs);
+        let outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
+            + &render_output("Standard error", &scene.stderr, room_of_outputs);
         let lines = difference(scene).into_iter().chain(details).collect();
         Self { scene, key, lines, shown, outputs, motion }
     }
@@ -229,7 +229,7 @@ pub(super) fn key(name: &str) -> String {
 }
 
 /// Returns the output of a program, cut to the room that is left.
-fn printed(heading: &str, output: &str, room: &mut usize) -> String {
+fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
     }

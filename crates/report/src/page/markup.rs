@@ -1,6 +1,6 @@
 //! Hostile text in HTML: it stays text.
 use crate::foreign::is_unseen;
-use crate::number::{beside, counted, general};
+use crate::number::{format_count, format_pair, general};
 use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
@@ -45,7 +45,7 @@ impl askama::filters::Escaper for PageText {
 
 /// Returns a number of scenes with its noun.
 pub(super) fn count_scenes(count: usize) -> String {
-    counted(count as u64, "scene")
+    format_count(count as u64, "scene")
 }
 
 /// Returns a course's own words on something, with a link that can be followed.
@@ -73,11 +73,11 @@ pub(super) fn number(value: f64) -> String {
 
 /// Returns two numbers as markup; digits of the second that differ from the first are marked. Numbers that count as
 /// equal are shown without the digits that only rounding has made.
-pub(super) fn compared(expected: f64, actual: f64, differs: bool) -> (String, String) {
+pub(super) fn mark_difference(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
         return (number(expected), number(actual));
     }
-    let (expected, actual, place) = beside(expected, actual);
+    let (expected, actual, place) = format_pair(expected, actual);
     let marked = match place {
         Some(place) => format!("{}<mark>{}</mark>", text(&actual[..place]), text(&actual[place..])),
         None => text(&actual),
@@ -92,8 +92,11 @@ mod tests {
     #[test]
     fn digits_of_rounding_are_shown_of_nothing_that_counts_as_the_same() {
         let (one, other) = (8.926_142_429_220e-5, 8.926_142_429_196e-5);
-        assert_eq!(compared(one, other, false), ("8.92614e-05".to_owned(), "8.92614e-05".to_owned()));
-        assert_eq!(compared(-0.017_034, -0.2725, true), ("-0.017034".to_owned(), "-0.<mark>272500</mark>".to_owned()));
+        assert_eq!(mark_difference(one, other, false), ("8.92614e-05".to_owned(), "8.92614e-05".to_owned()));
+        assert_eq!(
+            mark_difference(-0.017_034, -0.2725, true),
+            ("-0.017034".to_owned(), "-0.<mark>272500</mark>".to_owned())
+        );
     }
 
     #[test]

@@ -91,7 +91,7 @@ pub fn style() -> String {
 /// Returns the sources of script and style by which the policy of a page that shows a report in a frame allows the
 /// report's: a frame inherits the policy of the page around it.
 #[must_use]
-pub fn framed() -> [String; 2] {
+pub fn framed_digests() -> [String; 2] {
     [script(), &style()].map(|text| format!("'{}'", digest(text)))
 }
 
@@ -119,7 +119,7 @@ fn document(title: &str, body: &str, script: &str) -> String {
 }
 
 /// Renders a template, which can't fail: it is written to memory.
-fn rendered(template: &impl Template) -> String {
+fn render_template(template: &impl Template) -> String {
     template.render().unwrap_or_default()
 }
 

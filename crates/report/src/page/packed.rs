@@ -142,7 +142,7 @@ mod tests {
         Evidence { layout, window, reference: track.clone(), submission: track, steps: Vec::new(), inspected }
     }
 
-    fn packed(evidence: &Evidence, precision: Precision) -> PackedMotions {
+    fn pack(evidence: &Evidence, precision: Precision) -> PackedMotions {
         PackedMotions::from_evidence(
             evidence,
             &[("submission", &evidence.submission), ("reference", &evidence.reference)],
@@ -154,12 +154,12 @@ mod tests {
     #[test]
     fn motions_are_exact_within_the_budget() {
         let small = evidence(11, 400, |k| (k as f64).sin());
-        assert!(packed(&small, Precision::AsRoomAllows).rounded.is_none());
+        assert!(pack(&small, Precision::AsRoomAllows).rounded.is_none());
         // Noise can't be packed.
         let large = evidence(200, 400, |k| (k as f64 * 12.9898).sin() * 43758.5453 % 1.0);
-        let rounded = packed(&large, Precision::AsRoomAllows);
+        let rounded = pack(&large, Precision::AsRoomAllows);
         assert!(rounded.rounded.is_some());
-        assert!(packed(&small, Precision::Rounded).rounded.is_some());
+        assert!(pack(&small, Precision::Rounded).rounded.is_some());
     }
 
     /// Read back as the viewer reads it, a rounded motion is off by no more than half a unit.
@@ -167,7 +167,7 @@ mod tests {
     fn rounded_motions_are_near() {
         let value = |k: usize| if k == 12 { f64::NAN } else { (k as f64 * 0.37).sin() * (1.0 + k as f64) };
         let all = evidence(3, 20, value);
-        let Rounding { unit, .. } = packed(&all, Precision::Rounded).rounded.expect("rounded");
+        let Rounding { unit, .. } = pack(&all, Precision::Rounded).rounded.expect("rounded");
         let bytes = round(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
         assert_eq!(u64::from_le_bytes(bytes[..8].try_into().expect("eight")), 2);
         assert_eq!(bytes[8..8 + 96], super::bytes(&all.submission.values[24..36])[..]);

@@ -1,5 +1,5 @@
 //! The smallest scene for a cause, on a page: the scene, both motions, the values that differ, the computation by hand.
-use super::{Card, case::mistakes, markup::text, rendered};
+use super::{Card, case::mistakes, markup::text, render_template};
 use crate::{smallest::title, words::first_divergence};
 use askama::Template;
 use fosssim_findings::smallest::SmallestScene;
@@ -9,7 +9,7 @@ pub(super) fn article(small: &SmallestScene, card: Option<&Card>, number: usize)
     let key = format!("small-{number}");
     let mistakes = mistakes(&small.explanations[..small.explanations.len().min(1)], card.is_some_and(Card::has_values));
     let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
-    rendered(&SmallestContent { small, card, number, key: &key, shown })
+    render_template(&SmallestContent { small, card, number, key: &key, shown })
 }
 
 /// A smallest scene, its card, and what the card shows.

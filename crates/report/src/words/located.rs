@@ -6,7 +6,7 @@ const NAMED: usize = 2;
 
 /// Returns the contents that they have in common, with counts, and where the first of them ends.
 #[must_use]
-pub fn located(found: &LocatedFailure) -> String {
+pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure { failing, contents, failed, with, without, first, step } = found;
     let Some((place, others)) = contents.split_first() else { return String::new() };
     let scenes = format!("{with} scenes {}", place_of(place));
@@ -61,7 +61,7 @@ mod tests {
             step: 14,
         };
         assert_eq!(
-            located(&found),
+            describe_located(&found),
             "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the first of them, \
              GeometricTests/chain, the last complete record is that of step 14. Just as likely: those with a step of hybrid \
              (zones: one)."
@@ -75,7 +75,7 @@ mod tests {
             ..found
         };
         assert_eq!(
-            located(&some),
+            describe_located(&some),
             "7 of the 9 scenes in which the failsafe moves a zone (held by: a half-plane) crash or run into a limit, and none of \
              the 61 others. In the first of them, GeometricTests/chain, the last complete record is the first one."
         );

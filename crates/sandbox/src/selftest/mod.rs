@@ -86,7 +86,7 @@ impl PromiseTable {
 
     /// Returns the number of promises that hold.
     #[must_use]
-    pub fn held(&self) -> usize {
+    pub fn count_held(&self) -> usize {
         self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
     }
 }

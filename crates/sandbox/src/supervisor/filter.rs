@@ -168,7 +168,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     }
     if !own_files {
         // A build tool may set the times of a file that it has open (no path: a null pointer), which is what most do.
-        let named = given(1)?;
+        let named = is_not_null(1)?;
         refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
     }
     // Words in a file's pages are the same words for every process that maps it: a library's would wake other runs.
@@ -289,7 +289,7 @@ fn each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
 }
 
 /// Matches when the argument is no null pointer.
-fn given(argument: u8) -> io::Result<SeccompRule> {
+fn is_not_null(argument: u8) -> io::Result<SeccompRule> {
     let given = SeccompCondition::new(argument, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
     rule(vec![given.map_err(io::Error::other)?])
 }

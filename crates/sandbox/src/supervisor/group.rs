@@ -95,12 +95,12 @@ impl Group {
 
     /// Returns whether all processes in it can be ended with one command.
     pub(super) fn can_kill(&self) -> bool {
-        self.unified().is_some()
+        self.unified_part().is_some()
     }
 
     /// Ends all processes in the group, if that is possible.
     pub(super) fn kill(&self) -> io::Result<()> {
-        self.unified().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
+        self.unified_part().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
     }
 
     /// Returns whether the kernel ended a process because the group had no memory left.
@@ -113,10 +113,10 @@ impl Group {
 
     /// Returns the processor time of all processes that are or were in the group.
     pub(super) fn cpu(&self) -> Duration {
-        Duration::from_micros(self.unified().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
+        Duration::from_micros(self.unified_part().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
     }
 
-    fn unified(&self) -> Option<&Part> {
+    fn unified_part(&self) -> Option<&Part> {
         self.parts.iter().find(|part| part.kind == Kind::Unified)
     }
 

@@ -35,7 +35,7 @@ pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Pat
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;
     let (file, mode) = match announced.call {
-        libc::SYS_fchmod => (held(thread, first, folder, root)?, second),
+        libc::SYS_fchmod => (reopen_held(thread, first, folder, root)?, second),
         libc::SYS_fchmodat => {
             let start = if first as i32 == libc::AT_FDCWD { Start::Current } else { Start::Held(first) };
             (change_named(thread, &start, second, folder, root)?, third)
@@ -60,7 +60,7 @@ enum Start {
 }
 
 /// Returns the file that the thread holds open under this number, opened by the name that it has now.
-fn held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
+fn reopen_held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
     beneath(&target, folder, root).map_err(|_| libc::EPERM)
 }

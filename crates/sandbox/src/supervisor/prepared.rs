@@ -51,7 +51,7 @@ impl PreparedRun {
     }
 
     /// Returns the signals that are ignored.
-    pub(super) fn ignored(&self) -> Rc<[i32]> {
+    pub(super) fn ignored_signals(&self) -> Rc<[i32]> {
         self.ignored.clone().unwrap_or_else(|| sys::ignored_signals().into())
     }
 

@@ -149,7 +149,7 @@ impl Run {
             entrance,
             rules,
             filters: prepared.filters.clone(),
-            ignored: prepared.ignored(),
+            ignored: prepared.ignored_signals(),
             groups: group.as_ref().map_or(Ok(Vec::new()), Group::entrances).map_err(stage("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
             input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),

@@ -18,7 +18,7 @@ pub trait Number:
     fn multiply_add(self, factor: Self, addend: Self) -> Self;
 
     /// Returns the double that is handed over.
-    fn rounded(self) -> f64;
+    fn to_double(self) -> f64;
 }
 
 /// A double whose products and sums are fused: one rounding instead of two.
@@ -30,7 +30,7 @@ impl Number for FusedDouble {
         self.mul_add(factor, addend)
     }
 
-    fn rounded(self) -> f64 {
+    fn to_double(self) -> f64 {
         self
     }
 }
@@ -55,7 +55,7 @@ fn plus<N: Number>(v: Vector<N>, s: N, w: Vector<N>) -> Vector<N> {
 }
 
 fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
-    Vec2::new(v[0].rounded(), v[1].rounded())
+    Vec2::new(v[0].to_double(), v[1].to_double())
 }
 
 /// Returns a center at the time `t`.
@@ -73,7 +73,7 @@ fn evaluate<N: Number>(subject: Subject, letters: &[N]) -> Vec<f64> {
         let sum = &mut sums[formula.degree - term.power];
         *sum = product.multiply_add(letters[*last], *sum);
     }
-    sums.iter().map(|sum| sum.rounded()).collect()
+    sums.iter().map(|sum| sum.to_double()).collect()
 }
 
 /// Returns the overlap and approach of two particles.

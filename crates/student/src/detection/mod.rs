@@ -338,7 +338,7 @@ fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
 fn is_held(world: &World, pair: Pair) -> bool {
     let Object::Edge(index) = pair.object else { return false };
     let edge = world.scene.edges[index];
-    world.fixed(edge.first) && world.fixed(edge.second)
+    world.is_fixed(edge.first) && world.is_fixed(edge.second)
 }
 
 /// Returns whether the particles' paths stay far apart, judged by bounding circles. The assignment does not require

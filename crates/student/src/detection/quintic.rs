@@ -8,13 +8,13 @@ use crate::{Area, Mistake, author::Student};
 pub fn approach(student: Student, bodies: &[PointMotion; 3]) -> Vec<f64> {
     match student.mistake_in(&[Area::ParticleEdge]) {
         Some(Mistake::QuinticRight | Mistake::FactorizedAll) => factorized::quintic(bodies),
-        _ => supplied(student, bodies),
+        _ => course_formula(student, bodies),
     }
 }
 
 /// Returns the course's formula, term by term and in its order, its wrong cubic coefficient included unless that was
 /// put right.
-fn supplied(student: Student, [one, two, three]: &[PointMotion; 3]) -> Vec<f64> {
+fn course_formula(student: Student, [one, two, three]: &[PointMotion; 3]) -> Vec<f64> {
     let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
     let d12 = one.shift - two.shift;
     let d32 = three.shift - two.shift;

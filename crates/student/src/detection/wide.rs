@@ -87,7 +87,7 @@ impl Number for WideNumber {
         self * factor + addend
     }
 
-    fn rounded(self) -> f64 {
+    fn to_double(self) -> f64 {
         self.high
     }
 }

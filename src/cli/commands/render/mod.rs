@@ -16,7 +16,7 @@ use crate::{
         shape::Shape,
         svg,
     },
-    report::number::counted,
+    report::number::format_count,
     scene::Scene,
 };
 use anyhow::{Context, Result, bail};
@@ -41,11 +41,11 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     // An output that can't work is reported before the work is done.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {
-        Some(trace) => motion::traced(&scene.scene, trace, picks)?,
+        Some(trace) => motion::read_motion(&scene.scene, trace, picks)?,
         None => motion::reference(&scene.scene, picks)?,
     };
     let overlay = &arguments.overlay;
-    let overlay = overlay.as_ref().map(|trace| motion::traced(&scene.scene, trace, picks)).transpose()?;
+    let overlay = overlay.as_ref().map(|trace| motion::read_motion(&scene.scene, trace, picks)).transpose()?;
     if main.pictures == 0 {
         let why = main.stopped.map_or_else(String::new, |why| format!(": {why}"));
         bail!("there is nothing to draw of {}{why}", main.name);
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let options = PictureOptions { size: arguments.size, label: !arguments.no_label };
     let mut reel = Reel::new(&scene.scene, main, overlay, options, picks);
     let to_stdout = matches!(target, RenderTarget::Stream(_)) && arguments.output == Path::new("-");
-    let place = input::shown(&arguments.output);
+    let place = input::printable_name(&arguments.output);
     let words = target.draw(form, &mut reel, rate).map_err(|error| match error.is::<std::io::Error>() {
         true => error.context(format!("cannot write {place}")),
         false => error,
@@ -115,7 +115,7 @@ fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Resu
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
-            bail!("the scene has {}; there is no step {step}", counted(last.into(), "step"));
+            bail!("the scene has {}; there is no step {step}", format_count(last.into(), "step"));
         }
         // A particle's path consists of its earlier positions.
         let first = if scene.display.paths.is_empty() { step } else { 0 };
@@ -135,7 +135,7 @@ fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Resu
         bail!("these would be {pictures} pictures; more than {MOST_PICTURES} are not drawn, add --every {least}");
     }
     if pictures == 0 {
-        let steps = counted(last.into(), "step");
+        let steps = format_count(last.into(), "step");
         bail!("no step is drawn: the scene has {steps}, and every {every}th is asked for");
     }
     Ok(picks)
@@ -229,14 +229,14 @@ impl RenderTarget {
             (first, last) if first == last => format!("step {first}"),
             (first, last) => format!("steps {first} to {last}"),
         };
-        let counted_pictures = counted(pictures.into(), "picture");
+        let counted_pictures = format_count(pictures.into(), "picture");
         let every = match reel.picks.every {
             1 => String::new(),
             every => format!(", every {every}th"),
         };
         let film = |bytes: u64| {
             let seconds = short(f64::from(pictures) / f64::from(rate.per_second()));
-            let bytes = if bytes > 0 { format!(", {}", counted(bytes, "byte")) } else { String::new() };
+            let bytes = if bytes > 0 { format!(", {}", format_count(bytes, "byte")) } else { String::new() };
             let per_second = rate.per_second();
             format!("{counted_pictures} of {size}: {steps}{every}, {per_second} per second, {seconds} s{bytes},")
         };

@@ -139,7 +139,7 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
 ///
 /// # Errors
 /// When it can't be opened or kept, or the operating system fails while it is read. Damage ends the motion.
-pub(super) fn traced(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
+pub(super) fn read_motion(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(scene);
     let mut reader = trace.records(scene);

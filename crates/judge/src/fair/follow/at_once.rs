@@ -54,7 +54,7 @@ impl Follower<'_> {
             }
             let similarity = Similarity::measure(own, logged);
             if similarity.is_clear(own.len() == lengths[number]) && similarity.sum > floors[number] {
-                found[number] = Some(similarity.matched());
+                found[number] = Some(similarity.as_match());
             }
         }
         found

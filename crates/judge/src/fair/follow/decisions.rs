@@ -69,7 +69,7 @@ impl Follower<'_> {
         if !own.lost {
             return;
         }
-        let Some((motion, expected)) = &self.expected() else { return };
+        let Some((motion, expected)) = &self.expected_polynomials() else { return };
         let (actual, hits) = (by_polynomials.time(), own.time <= 1.0);
         if (actual <= 1.0) != hits {
             if contact::decides(motion, expected) == Some(hits) {
@@ -86,7 +86,7 @@ impl Follower<'_> {
     fn turned_round(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
-            Decision::Miss { .. } => self.expected().as_ref().map_or(decision, |(motion, expected)| {
+            Decision::Miss { .. } => self.expected_polynomials().as_ref().map_or(decision, |(motion, expected)| {
                 let time = contact::possible_time(expected);
                 let normal = motion.normal(time);
                 Decision::Hit { time, normal: Vec2::new(normal.x.value, normal.y.value) }
@@ -100,14 +100,14 @@ impl Follower<'_> {
         if self.call.is_disputed {
             return true;
         }
-        match &self.expected() {
+        match &self.expected_polynomials() {
             Some((motion, expected)) => contact::is_borderline(motion, expected),
             None => self.sensitivity.is_some_and(|known| known.flipped.contains(&call)),
         }
     }
 
     /// Returns the logged impulse that this decision is about.
-    fn logged(&mut self, pair: Pair) -> Option<LoggedImpulse> {
+    fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
         let index = self.contacts.about(key(pair)?).find(|index| !self.used[*index])?;
         self.used[index] = true;
         Some(self.records.end.impulses[index])
@@ -116,15 +116,15 @@ impl Follower<'_> {
     /// Follows a logged decision.
     fn follow(&mut self, pair: Pair, own: Decision) -> Decision {
         let call = self.decisions.len();
-        let logged = self.logged(pair);
+        let logged = self.logged_impulse(pair);
         match (own, logged) {
             (Decision::Miss { .. }, None) => own,
             (Decision::Hit { time, normal }, Some(actual)) => {
                 let own = Impulse { pair, normal, time };
-                let known = self.expected();
+                let known = self.expected_polynomials();
                 let finding = contact::hit(self.records.before, known.as_ref(), own, &actual, &mut self.judged);
                 finding.into_iter().for_each(|detail| self.charge(detail));
-                contact::followed(actual).unwrap_or(Decision::Hit { time, normal })
+                contact::logged_decision(actual).unwrap_or(Decision::Hit { time, normal })
             }
             (Decision::Hit { time, normal }, None) => {
                 if !self.is_borderline(call) {
@@ -135,14 +135,14 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Whether they collide may go either way; where and when, if they do, may not.
-                    let (known, judged) = (self.expected(), &mut self.judged);
+                    let (known, judged) = (self.expected_polynomials(), &mut self.judged);
                     let finding =
                         contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);
                     finding.into_iter().for_each(|detail| self.charge(detail));
                 } else {
                     self.charge(FindingDetail::SuperfluousCollision { actual });
                 }
-                contact::followed(actual).unwrap_or(own)
+                contact::logged_decision(actual).unwrap_or(own)
             }
         }
     }

@@ -150,7 +150,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns the motion of the call's objects, and the expected polynomials.
-    fn expected(&self) -> Option<(BoundedPairMotion, ExpectedPolynomials)> {
+    fn expected_polynomials(&self) -> Option<(BoundedPairMotion, ExpectedPolynomials)> {
         let SeenCall { motion, has_right_approach } = self.call.seen?;
         let polynomials = motion.polynomials();
         Some((motion, if has_right_approach { polynomials.with_right_approach() } else { polynomials }))

@@ -36,7 +36,7 @@ impl<'a> Follower<'a> {
         let bounds = self.sensitivity.and_then(|known| known.passes.get(self.pass.index as usize));
         let motion = |q_end: &[f64], bounds: Option<&Vec<f64>>| {
             let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
-            bounds.map_or(motion, |bounds| motion.widened(self.context.particles(pair), bounds))
+            bounds.map_or(motion, |bounds| motion.widen(self.context.particles(pair), bounds))
         };
         let mut seen = motion(q_end, bounds);
         let mut expected = seen.polynomials();
@@ -67,9 +67,9 @@ impl<'a> Follower<'a> {
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
             // Behind an error that moves them, the place of the particles is unknown.
             let is_reached = is_known || !self.tainted[self.part()];
-            let pended = self.judged.pended();
+            let pended = self.judged.pending_count();
             let said = self.judged.note(&expected, &logged, result, is_reached);
-            let hangs = self.judged.pended() > pended;
+            let hangs = self.judged.pending_count() > pended;
             match said {
                 PolynomialJudgement::Right => {}
                 PolynomialJudgement::RightForm => has_right_approach = true,

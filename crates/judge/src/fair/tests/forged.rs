@@ -2,7 +2,7 @@
 use crate::{
     fair::{FairRefusal, FairVerdict, Judgement, context::Context},
     finding::{FindingDetail, FindingKind},
-    samples::{BOUNCE, ZONES, changed, judged, relog, run, scene, written},
+    samples::{BOUNCE, ZONES, changed_trace, judge_by_both, relog, run, scene, write_frames},
 };
 use fosssim_model::{
     scene::{Collision, Scene, original},
@@ -29,7 +29,7 @@ fn assets() -> Vec<(String, Scene)> {
 }
 
 fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
-    *judged(scene, trace).fair.expect("the fair rules were asked")
+    *judge_by_both(scene, trace).fair.expect("the fair rules were asked")
 }
 
 /// A program whose polynomials are divided by powers of two: the course's library drops what becomes small, and the
@@ -67,7 +67,7 @@ fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
         let distance = distance(&run(&scene, ()), &frames);
         if distance > 1e-7 {
             changed += 1;
-            let judged = fair(&scene, &written(&scene, &frames));
+            let judged = fair(&scene, &write_frames(&scene, &frames));
             assert_eq!(judged.verdict, FairVerdict::Rejected, "{name}: states are {distance} off");
         }
     }
@@ -94,7 +94,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
 #[test]
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
-        let judged = fair(&scene, &written(&scene, &run(&scene, Steering(Factors(|_, _| 1, 0)))));
+        let judged = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Factors(|_, _| 1, 0)))));
         assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.findings.first_divergence);
     }
 }
@@ -120,10 +120,10 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let scene = scene(TOUCH);
     let with = |time, x, y| {
         let hit = Decision::Hit { time, normal: Vec2::new(x, y) };
-        fair(&scene, &written(&scene, &run(&scene, Steering(Answer(Some(hit))))))
+        fair(&scene, &write_frames(&scene, &run(&scene, Steering(Answer(Some(hit))))))
     };
     let miss = Decision::Miss { time: Time::None };
-    let without = fair(&scene, &written(&scene, &run(&scene, Steering(Answer(Some(miss))))));
+    let without = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Answer(Some(miss))))));
     let right = with(1.0, -0.06, -0.08);
     assert_eq!(
         (without.verdict, right.verdict),
@@ -145,8 +145,8 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {
-        let reference = changed(&scene, |_| {});
-        let forged = changed(&scene, |frames| {
+        let reference = changed_trace(&scene, |_| {});
+        let forged = changed_trace(&scene, |frames| {
             for frame in frames {
                 relog(frame, |index, list| {
                     if index == 0 {
@@ -167,7 +167,7 @@ fn one_factor_does_not_vouch_for_empty_logs() {
 #[test]
 fn a_large_factor_does_not_vouch_for_garbage() {
     for (name, scene) in assets() {
-        let forged = changed(&scene, |frames| {
+        let forged = changed_trace(&scene, |frames| {
             for frame in frames {
                 relog(frame, |index, list| {
                     if index == 0 {
@@ -187,7 +187,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
 fn what_is_no_positive_number_is_no_factor() {
     let scene = scene(BOUNCE);
     for factor in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-9, 0.0, 5e-324, 1e-320] {
-        let forged = changed(&scene, |frames| {
+        let forged = changed_trace(&scene, |frames| {
             for frame in frames {
                 relog(frame, |_, list| {
                     Polynomial::trimmed(&list.iter().map(|c| factor * c).collect::<Vec<_>>()).coefficients().to_vec()
@@ -209,14 +209,14 @@ const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-eul
 fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);
     let empty = |frames: &mut [Frame]| frames.iter_mut().for_each(|frame| relog(frame, |_, _| vec![]));
-    let judged = fair(&scene, &changed(&scene, |frames| empty(frames)));
+    let judged = fair(&scene, &changed_trace(&scene, |frames| empty(frames)));
     let first = judged.findings.first_divergence.expect("the first empty polynomial");
     assert_eq!((judged.findings.wrong_steps, first.step), (4, 1), "{judged:?}");
     assert!(matches!(first.detail, FindingDetail::Coefficient { .. }), "{first:?}");
     // The fourth step's end is wrong, too: the empty polynomial of the second still comes first.
     let judged = fair(
         &scene,
-        &changed(&scene, |frames| {
+        &changed_trace(&scene, |frames| {
             empty(&mut frames[3..5]);
             frames[8].state.positions[0] += 0.25;
         }),
@@ -240,7 +240,7 @@ fn steps_that_lead_nowhere_are_never_right() {
                 // One ball alone may be anywhere near.
                 continue;
             }
-            let forged = changed(&scene, |frames| {
+            let forged = changed_trace(&scene, |frames| {
                 for frame in &mut frames[1..] {
                     frame.state.positions.fill(value);
                     frame.state.velocities.fill(value);
@@ -248,7 +248,7 @@ fn steps_that_lead_nowhere_are_never_right() {
                     relog(frame, |_, list| vec![f64::NAN; list.len()]);
                 }
             });
-            let outcome = judged(&scene, &forged);
+            let outcome = judge_by_both(&scene, &forged);
             let right = outcome.right_steps(crate::Book::Fair);
             assert_eq!(right, 0, "{value}: {:?}", outcome.fair);
         }
@@ -263,9 +263,9 @@ fn a_lost_record_spoils_two_steps() {
         <particle m="1" px="0" py="0" vx="1" vy="2" fixed="0" radius="0.1"/></scene>"#,
     );
     for value in [f64::NAN, f64::INFINITY, 1e200] {
-        let forged = changed(&scene, |frames| frames[5].state.velocities[1] = value);
+        let forged = changed_trace(&scene, |frames| frames[5].state.velocities[1] = value);
         assert_eq!(fair(&scene, &forged).findings.wrong_steps, 2, "{value}");
-        let forged = changed(&scene, |frames| {
+        let forged = changed_trace(&scene, |frames| {
             for frame in &mut frames[5..] {
                 frame.state.positions.fill(value);
                 frame.state.velocities.fill(value);
@@ -284,7 +284,7 @@ fn the_mid_record_logs_the_passes_before_it() {
         let steps = own[1..].chunks_exact(2);
         let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
         let logging = steps.clone().filter(|step| is_hybrid && !step[0].polynomials.is_empty()).count();
-        let emptied = changed(&scene, |frames| {
+        let emptied = changed_trace(&scene, |frames| {
             frames[1..]
                 .iter_mut()
                 .step_by(2)
@@ -293,7 +293,7 @@ fn the_mid_record_logs_the_passes_before_it() {
         });
         assert_eq!(wrong_steps(&emptied) as usize, logging, "{name}, without passes");
         let longer = steps.filter(|step| step[0].polynomials.len() < step[1].polynomials.len()).count();
-        let filled = changed(&scene, |frames| {
+        let filled = changed_trace(&scene, |frames| {
             for step in frames[1..].chunks_exact_mut(2) {
                 step[0].polynomials = step[1].polynomials.clone();
             }
@@ -313,7 +313,7 @@ fn the_references_own_way_is_right_wherever_it_leads() {
     );
     let frames = run(&scene, ());
     assert!(frames.iter().any(|frame| !frame.state.velocities.iter().all(|v| v.is_finite())));
-    assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, FairVerdict::Accepted);
+    assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
 
 /// Balls that rest on each other: every approach is zero except for round-off. A trace in which all of them go the
@@ -332,9 +332,9 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
             polynomials[1] = Polynomial::trimmed(&[1.0]);
         }
     }
-    let plain = fair(&scene, &written(&scene, &run(&scene, ())));
+    let plain = fair(&scene, &write_frames(&scene, &run(&scene, ())));
     assert_eq!(plain.verdict, FairVerdict::Accepted);
-    let forged = fair(&scene, &written(&scene, &run(&scene, Steering(Push))));
+    let forged = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Push))));
     assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }
@@ -374,8 +374,8 @@ fn what_a_response_has_moved_is_not_left_out() {
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context: Context::new(&scene), is_moved, steps: vec![vec![]] };
         run(&scene, &mut moved);
-        let reference = changed(&scene, |_| {});
-        let forged = changed(&scene, |frames| {
+        let reference = changed_trace(&scene, |_| {});
+        let forged = changed_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let left_out = &moved.steps[number.div_ceil(2)];
                 relog(frame, |index, list| if left_out[index] { vec![] } else { list.to_vec() });
@@ -422,7 +422,7 @@ fn what_is_gone_is_no_mixture_of_forms() {
     assert!(run(&stretched, ()).iter().any(|frame| frame.polynomials.iter().any(is_slip)));
     for (name, scene) in assets().into_iter().chain([("stretched".to_owned(), stretched)]) {
         for factor in [1e-2, 1e-4, 1e-6, 1e-8] {
-            let judged = fair(&scene, &written(&scene, &run(&scene, Steering(Edges(factor)))));
+            let judged = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Edges(factor)))));
             let counts = &judged.findings.counts;
             let lost = counts.get(FindingKind::TrimmedDecision);
             assert_eq!(counts.total(), lost, "{factor} in {name}: {:?}", judged.findings.first_divergence);
@@ -444,7 +444,7 @@ fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
         let mut moved = Moved { context, is_moved, steps: vec![vec![]] };
         run(&scene, &mut moved);
         // Every polynomial of pairs that have collided before in the first pass of their step.
-        let trace = changed(&scene, |frames| {
+        let trace = changed_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let collided = &moved.steps[number.div_ceil(2)];
                 relog(frame, |index, list| {
@@ -474,7 +474,7 @@ fn fixed_particles_are_not_moved_by_a_response() {
     );
     let frames = run(&scene, ());
     assert!(!frames[2].impulses.is_empty() && frames[2].polynomials.get(3).is_empty());
-    let forged = changed(&scene, |frames| {
+    let forged = changed_trace(&scene, |frames| {
         for frame in &mut frames[1..3] {
             relog(frame, |index, list| if index == 3 { vec![0.25] } else { list.to_vec() });
         }
@@ -519,11 +519,11 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
         let count = contacts(&frames);
         assert_eq!(contacts(&run(&scene, ())), 1 - count);
         decided[count] += 1;
-        assert_eq!(fair(&scene, &written(&scene, &frames)).verdict, FairVerdict::Accepted, "{text}");
+        assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted, "{text}");
         for impulse in frames.iter_mut().flat_map(|frame| &mut frame.impulses) {
             impulse.normal.x += 1e-9;
         }
-        let is_rejected = fair(&scene, &written(&scene, &frames)).verdict == FairVerdict::Rejected;
+        let is_rejected = fair(&scene, &write_frames(&scene, &frames)).verdict == FairVerdict::Rejected;
         assert_eq!(is_rejected, count == 1, "with another normal: {text}");
     }
     assert!(decided.iter().all(|count| *count > 0), "{decided:?}");
@@ -536,7 +536,7 @@ fn the_initial_record_has_no_lists() {
     let frames = run(&scene, ());
     let later = frames.iter().find(|frame| !frame.impulses.is_empty()).expect("a contact");
     for (impulses, polynomials) in [(true, false), (false, true), (true, true)] {
-        let forged = changed(&scene, |frames| {
+        let forged = changed_trace(&scene, |frames| {
             if impulses {
                 frames[0].impulses.clone_from(&later.impulses);
             }

@@ -2,7 +2,7 @@
 use crate::{
     options::Options,
     replay,
-    samples::{BOUNCE, ZONES, changed, relog, scene},
+    samples::{BOUNCE, ZONES, changed_trace, relog, scene},
 };
 use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
@@ -83,11 +83,11 @@ fn both_ways_say_the_same_to_the_last_field() {
     for text in [BOUNCE, ZONES, LARGE, SPIN] {
         let scene = scene(text);
         for (number, change) in changes.into_iter().enumerate() {
-            let trace = changed(&scene, change);
+            let trace = changed_trace(&scene, change);
             let [quickly, slowly] = judged(&scene, &trace);
             assert!(quickly == slowly, "change {number}: {quickly}\n{slowly}");
         }
-        let mut cut = changed(&scene, |_| {});
+        let mut cut = changed_trace(&scene, |_| {});
         cut.truncate(cut.len() - 5);
         let [quickly, slowly] = judged(&scene, &cut);
         assert!(quickly == slowly, "{quickly}\n{slowly}");
@@ -108,7 +108,7 @@ fn what_only_the_root_finder_sees_is_no_missed_collision() {
             vy="-0.6812726629071891" fixed="0" radius="14.158818287407597"/></scene>"#,
     );
     let factors = [0.751_233_916_835_469, 0.962_163_694_423_374_3];
-    let trace = changed(&scene, |frames| {
+    let trace = changed_trace(&scene, |frames| {
         let scaled = |index: usize, own: &[f64]| own.iter().map(|c| factors[index % 2] * c).collect();
         frames.iter_mut().for_each(|frame| relog(frame, scaled));
     });
@@ -130,7 +130,7 @@ fn audited_searches_judge_the_same() {
     ];
     for scene in [BOUNCE, ZONES, SPIN].map(scene) {
         for change in changes {
-            let trace = changed(&scene, change);
+            let trace = changed_trace(&scene, change);
             let [needed, audited] = [RootSearch::WhereNeeded, RootSearch::Audit].map(|root_search| {
                 let options = Options { fair: true, threads: 1, root_search, ..Options::default() };
                 let mut outcome = replay::judge(&scene, &trace[..], &options, &mut ());
@@ -145,7 +145,7 @@ fn audited_searches_judge_the_same() {
 #[test]
 fn what_the_original_rejects_of_itself_is_found() {
     let scene = scene(LARGE);
-    let trace = changed(&scene, |_| {});
+    let trace = changed_trace(&scene, |_| {});
     let outcome = replay::judge(&scene, &trace[..], &Options::default(), &mut ());
     assert!(outcome.parity.findings.counts.total() > 0, "{outcome:?}");
 }

@@ -23,7 +23,7 @@ const LEVELS: [&str; Level::ALL.len()] =
     ["signs of coefficients", "Bernstein coefficients", "parts of the step", "exact arithmetic"];
 
 /// Returns what the search found.
-pub(super) fn found(time: Option<f64>) -> String {
+pub(super) fn describe_time(time: Option<f64>) -> String {
     match time {
         None => "the search never ends".to_owned(),
         Some(time) if time.is_infinite() => "the search finds no impact".to_owned(),
@@ -80,7 +80,7 @@ impl Decisions {
             let decided = decision.time.map_or("certainly no impact".to_owned(), |[from, to]| {
                 format!("certainly an impact between {from} and {to}")
             });
-            let words = format!("{geometry}: {decided}, but {}\n      {coefficients:?}", found(Some(time)));
+            let words = format!("{geometry}: {decided}, but {}\n      {coefficients:?}", describe_time(Some(time)));
             self.first[reason] = Some((index, words));
         }
     }

@@ -106,7 +106,7 @@ impl AuditTally {
                 let what = format!(
                     "{} ({geometry}): {certificate} excludes an impact, but {}\n{lists:?}",
                     PAIRS[pair],
-                    decisions::found(time.ok())
+                    decisions::describe_time(time.ok())
                 );
                 self.first = Some((index, what));
             }

@@ -2,7 +2,7 @@
 //! they use, and the noise that the rules reject.
 use fosssim_lab::{
     right,
-    runs::{is_accepted, judged},
+    runs::{is_accepted, judge},
 };
 use fosssim_oracle::{
     assignments::{Assignment, ImpulseList},
@@ -99,7 +99,7 @@ fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>)
         let mut single = SingleSteps::new(scene);
         let Ok(trace) = arithmetic.trace(scene, |state, contacts| single.hear(state, contacts)) else { continue };
         tally.room = [tally.room, single.room].into_iter().flatten().min();
-        let outcome = judged(scene, &trace);
+        let outcome = judge(scene, &trace);
         let is_accepted = is_accepted(&outcome);
         let Some(fair) = outcome.fair else { continue };
         tally.programs += 1;
@@ -162,7 +162,7 @@ impl<'a> SingleSteps<'a> {
             let mut trace = Vec::new();
             right::record(&self.one, &before, &[], &mut trace);
             right::record(&self.one, &state, contacts, &mut trace);
-            if !is_accepted(&judged(&self.one, &trace)) {
+            if !is_accepted(&judge(&self.one, &trace)) {
                 self.room = Some(factor);
             }
             factor *= 2;
@@ -192,7 +192,7 @@ fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally
                 let value = f64::from_le_bytes(number.try_into().unwrap_or_default());
                 number.copy_from_slice(&(value + noise).to_le_bytes());
             }
-            *refused += u64::from(!is_accepted(&judged(scene, &damaged)));
+            *refused += u64::from(!is_accepted(&judge(scene, &damaged)));
         }
     }
 }

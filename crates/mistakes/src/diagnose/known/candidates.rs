@@ -115,6 +115,6 @@ impl<'a> Candidates<'a> {
             }
             _ => {}
         }
-        self.trials.reached(program, sample) >= 1.0
+        self.trials.reproduced_share(program, sample) >= 1.0
     }
 }

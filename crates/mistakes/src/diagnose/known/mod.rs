@@ -49,13 +49,13 @@ use trials::Trials;
 /// whose first record is another scene's yields only the question whether it is of this scene
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
-pub fn known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
+pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::whole(trace));
     known_or_open(&mut reference, scene, scan).explanations
 }
 
 /// Returns whether a right program with one of these mistakes of the catalogue, and no other, makes all wrong steps of
-/// a trace that are kept. Asks much less than [`known`] does.
+/// a trace that are kept. Asks much less than [`find_known`] does.
 #[must_use]
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::whole(trace));
@@ -63,7 +63,7 @@ pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     [ApproachForm::Supplied, ApproachForm::RightApproach].into_iter().any(|correct| {
         let trials = Trials::new(&reference, scene, correct);
         let mut programs = rows.iter().map(|row| trials.program(&[row]));
-        programs.any(|program| scan.wrong.iter().all(|kept| trials.reached(&program, kept) >= 1.0))
+        programs.any(|program| scan.wrong.iter().all(|kept| trials.reproduced_share(&program, kept) >= 1.0))
     })
 }
 

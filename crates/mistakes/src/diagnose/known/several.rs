@@ -74,7 +74,7 @@ impl<'a> Search<'a> {
 
     fn progress(&self, rows: &[&'static Row]) -> f64 {
         let program = self.trials.program(rows);
-        self.probes.iter().map(|kept| self.trials.reached(&program, kept)).sum()
+        self.probes.iter().map(|kept| self.trials.reproduced_share(&program, kept)).sum()
     }
 
     /// Adds rows to a set of empty stages until it reproduces everything.
@@ -167,7 +167,7 @@ impl<'a> Search<'a> {
     /// Returns whether these rows reproduce everything, and none can be left out.
     fn explains(&self, set: &[&'static Row]) -> bool {
         let Some(probe) = self.probes.first() else { return false };
-        self.trials.reached(&self.trials.program(set), probe) >= 1.0
+        self.trials.reproduced_share(&self.trials.program(set), probe) >= 1.0
             && self.progress(set) >= self.goal()
             && self.is_needed(set)
             && self.count_confirmed(set).is_some()
@@ -259,7 +259,7 @@ impl<'a> Search<'a> {
         // A stage that carries as far but makes right steps wrong is not in the set.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
-            self.scan.right.iter().any(|kept| self.trials.reached(&program, kept) < 1.0)
+            self.scan.right.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)
         };
         rows.sort_by_cached_key(|row| (spoils(row), plausibility(row)));
         (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
@@ -282,7 +282,7 @@ impl<'a> Search<'a> {
             if self.trials.exceed(2 * WORK) && samples > 0 {
                 break;
             }
-            if self.trials.reached(&program, sample) < 1.0 {
+            if self.trials.reproduced_share(&program, sample) < 1.0 {
                 return None;
             }
             samples += u64::from(sample.difference.is_some());

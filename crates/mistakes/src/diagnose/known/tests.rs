@@ -1,5 +1,5 @@
 //! Traces with mistakes, made in memory, and what is said of them.
-use super::{known, shows};
+use super::{find_known, shows};
 use crate::diagnose::is_named_in;
 use crate::diagnose::{About, ExamplePlace, Explanation, explain, several};
 use fosssim_judge::Role;
@@ -27,13 +27,13 @@ fn scene() -> Scene {
 fn first(id: &str) -> Option<(String, Vec<String>)> {
     let row = find(id).expect("a row");
     let trace = student::trace(&scene(), Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
-    known(&scene(), &trace[..]).into_iter().next().map(|first| (first.key, first.same_as))
+    find_known(&scene(), &trace[..]).into_iter().next().map(|first| (first.key, first.same_as))
 }
 
 #[test]
 fn a_right_trace_needs_no_explanation() {
     let trace = student::trace(&scene(), Student::default()).expect("a trace");
-    assert_eq!(known(&scene(), &trace[..]), []);
+    assert_eq!(find_known(&scene(), &trace[..]), []);
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn a_right_approach_hides_no_mistake() {
     for id in ["decision-never", "pe-square-no-eh", "response-sign", "pp-no-two"] {
         let student = Student::new(find(id).map(|row| row.mistake)).with_right_approach();
         let trace = student::trace(&scene(), student).expect("a trace");
-        let explanations = known(&scene(), &trace[..]);
+        let explanations = find_known(&scene(), &trace[..]);
         let [explanation] = &explanations[..] else { panic!("{id} is not explained") };
         assert!(explanation.key == id || explanation.same_as.iter().any(|other| other == id), "{id}: {explanation:?}");
         let example = explanation.example.as_ref().expect("an example");
@@ -102,14 +102,14 @@ fn a_right_approach_hides_no_mistake() {
         assert!(!is_approach, "the approach is right: {example:?}");
     }
     let trace = student::trace(&scene(), Student::default().with_right_approach()).expect("a trace");
-    assert_eq!(known(&scene(), &trace[..]), []);
+    assert_eq!(find_known(&scene(), &trace[..]), []);
 }
 
 #[test]
 fn an_example_names_the_first_wrong_step() {
     let row = find("pp-no-two").expect("a row");
     let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
-    let explanations = known(&scene(), &trace[..]);
+    let explanations = find_known(&scene(), &trace[..]);
     let [explanation] = &explanations[..] else { panic!("one explanation") };
     assert_eq!((&*explanation.key, &explanation.about), (row.id, &About::Mistake));
     assert_eq!(explanation.reproduced, explanation.samples);
@@ -125,7 +125,7 @@ fn damaged_traces_are_read_as_far_as_they_go() {
     let row = find("pp-no-two").expect("a row");
     let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
     for length in [0, 1, 127, 200, trace.len() / 2, trace.len() - 1] {
-        let keys: Vec<String> = known(&scene(), &trace[..length]).into_iter().map(|first| first.key).collect();
+        let keys: Vec<String> = find_known(&scene(), &trace[..length]).into_iter().map(|first| first.key).collect();
         assert!(keys.iter().all(|key| key == "pp-no-two"), "cut at {length}: {keys:?}");
         assert!(length < 1000 || keys.len() == 1, "cut at {length}");
     }
@@ -133,7 +133,7 @@ fn damaged_traces_are_read_as_far_as_they_go() {
     for place in (0..trace.len()).step_by(trace.len() / 23) {
         let mut damaged = trace.clone();
         damaged[place] ^= 0xff;
-        let _explanations = known(&scene(), &damaged[..]);
+        let _explanations = find_known(&scene(), &damaged[..]);
     }
 }
 

@@ -50,7 +50,7 @@ impl<'a> Trials<'a> {
 
     /// Returns the part of the logged step that the program reproduces: 1 is all of it, polynomials are the first half.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
-    pub(super) fn reached(&self, program: &Program, kept: &KeptStep) -> f64 {
+    pub(super) fn reproduced_share(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;
         let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
         let guard = |index: usize, coefficients: &[f64]| {

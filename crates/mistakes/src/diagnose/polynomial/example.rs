@@ -20,7 +20,7 @@ fn example(study: &PolynomialStudy, case: &Case) -> Example {
     Example {
         step: sample.step,
         place: ExamplePlace::Given { pair: sample.pair, pass: sample.pass, subject: study.subject },
-        given: given(&sample.motion),
+        given: example_values(&sample.motion),
         // As the course's library would log it.
         expected: Polynomial::trimmed(&expected).coefficients().to_vec(),
         actual: case.logged.to_vec(),
@@ -29,10 +29,10 @@ fn example(study: &PolynomialStudy, case: &Case) -> Example {
 
 /// Returns the number of characters of the inputs.
 fn digits(case: &Case) -> usize {
-    given(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
+    example_values(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }
 
-fn given(motion: &PairMotion) -> Vec<ExampleValue> {
+fn example_values(motion: &PairMotion) -> Vec<ExampleValue> {
     match motion {
         PairMotion::Particles { centers, radii } => moving(centers, [Input::R1, Input::R2], radii),
         PairMotion::Edge { center, ends, radii } => moving(&[*center, ends[0], ends[1]], [Input::R1, Input::Re], radii),

@@ -93,7 +93,7 @@ impl Observer for Capture {
         }
     }
 
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         let StepRecords { mid: Some(mid), end } = &mut self.records else { return };
         mid.state.clone_from(state);
         mid.impulses.clone_from(&end.impulses);

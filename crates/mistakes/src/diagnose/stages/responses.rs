@@ -77,7 +77,7 @@ impl Responses {
             .filter(|(_, wrong)| !wrong.is_empty())
             .collect();
         if wrong.is_empty() {
-            return explain_many(facts).or_else(|| self.unresolved());
+            return explain_many(facts).or_else(|| self.explain_unresolved());
         }
         let mut kinds: Vec<PairKind> = wrong.keys().map(|changed| changed.kind).collect();
         kinds.dedup();
@@ -103,7 +103,7 @@ impl Responses {
     }
 
     /// Contacts of impulse rounds that are not resolved.
-    fn unresolved(&self) -> Option<Explanation> {
+    fn explain_unresolved(&self) -> Option<Explanation> {
         let fault = StageFault::Unresolved { all: self.contacts == 0 };
         (self.unresolved > 0).then(|| observation(fault, Vec::new(), self.unresolved))
     }

@@ -247,7 +247,7 @@ struct MotionErrors {
 
 impl MotionErrors {
     fn measure_motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
-        let (start, expected, end) = (&first.facts.before, first.expected(zone), first.end);
+        let (start, expected, end) = (&first.facts.before, first.expected_state(zone), first.end);
         let [from, ours, theirs] = [start, &expected, end].map(|state| center(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
         if length(should) > SMALL {

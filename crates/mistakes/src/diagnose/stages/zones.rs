@@ -107,7 +107,7 @@ impl<'a> FirstRound<'a> {
 
     /// Returns whether a zone's particles end in the right place, so that it proves nothing.
     pub(super) fn is_at_rest(&self, zone: &Group) -> bool {
-        self.are_at(&self.expected(zone), &zone.particles)
+        self.are_at(&self.expected_state(zone), &zone.particles)
     }
 
     /// Returns the contacts of a zone, one of each group of similar ones.
@@ -122,7 +122,7 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns the state that these groups leave, moved one after the other.
-    fn moved(&self, groups: &[&Group]) -> State {
+    fn moved_state(&self, groups: &[&Group]) -> State {
         let mut state = self.middle.clone();
         self.move_again(groups, &mut state);
         state
@@ -155,14 +155,14 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns the expected state of a zone.
-    pub(super) fn expected(&self, zone: &Group) -> State {
-        self.moved(&[zone])
+    pub(super) fn expected_state(&self, zone: &Group) -> State {
+        self.moved_state(&[zone])
     }
 
     /// Returns the fate of a zone that is seen.
     pub(super) fn fate(&self, zone: &Group) -> Fate {
         let all = &zone.particles;
-        let expected = self.expected(zone);
+        let expected = self.expected_state(zone);
         if self.are_at(&expected, all) {
             return Fate::Right;
         }
@@ -189,7 +189,7 @@ impl<'a> FirstRound<'a> {
         let others: Vec<&Group> = self.zones.iter().filter(|other| *other != zone).collect();
         let is_joined = |groups: &[&Group]| {
             let all = Group::union(groups);
-            self.is_seen(&all) && self.are_at(&self.moved(&[&all]), &all.particles)
+            self.is_seen(&all) && self.are_at(&self.moved_state(&[&all]), &all.particles)
         };
         let mut with_all = others.clone();
         with_all.insert(0, zone);
@@ -209,11 +209,11 @@ impl<'a> FirstRound<'a> {
             let left: Vec<usize> = zone.particles.iter().copied().filter(|one| !part.contains(one)).collect();
             let leads_there = |group: &Group| {
                 let is_body = group.particles.len() > 1 || group.stops(self.scene);
-                let moved = self.moved(&[group]);
+                let moved = self.moved_state(&[group]);
                 is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
             };
             // A particle that stays where it should be anyway was not left out.
-            let is_left = || left.iter().any(|&one| !self.is_at(&self.expected(zone), one));
+            let is_left = || left.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
             if is_left()
                 && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::from_particles(part.clone(), *flag)))
             {

@@ -3,13 +3,13 @@ use crate::{
     diagnose::is_named_in,
     diagnose::{
         About, Detail, Explanation, Guess, ListGuess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault,
-        WrongMotion, WrongVectors, settled, several,
+        WrongMotion, WrongVectors, settle_trace, several,
     },
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::Subject;
 
-fn said(key: &str, about: About, counts: (u64, u64), claims: &[&str]) -> Explanation {
+fn statement(key: &str, about: About, counts: (u64, u64), claims: &[&str]) -> Explanation {
     Explanation {
         key: key.to_owned(),
         about,
@@ -26,20 +26,20 @@ fn said(key: &str, about: About, counts: (u64, u64), claims: &[&str]) -> Explana
 fn letter(subject: Subject, form: &str) -> Explanation {
     let found = OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other));
     let claim = format!("{subject:?}/letter/{form}");
-    said("letter", About::Polynomials { subjects: vec![subject], found }, (5, 5), &[&claim])
+    statement("letter", About::Polynomials { subjects: vec![subject], found }, (5, 5), &[&claim])
 }
 
 fn unexplained(subject: Subject) -> Explanation {
     let about = About::Polynomials { subjects: vec![subject], found: OfPolynomials::Nothing };
-    said("unexplained", about, (0, 5), &[&format!("{subject:?}//")])
+    statement("unexplained", about, (0, 5), &[&format!("{subject:?}//")])
 }
 
 fn row(id: &str, claims: &[&str]) -> Explanation {
-    said(id, About::Mistake, (4, 4), claims)
+    statement(id, About::Mistake, (4, 4), claims)
 }
 
 fn stage(fault: StageFault) -> Explanation {
-    said(
+    statement(
         if matches!(fault, StageFault::Motion { .. }) { "stage-failsafe" } else { "stage-contact-vectors" },
         About::Stage(fault),
         (0, 3),
@@ -51,11 +51,11 @@ fn stage(fault: StageFault) -> Explanation {
 fn heads(traces: &[Vec<Explanation>]) -> Vec<(String, usize)> {
     let heads = several(traces.iter().map(Vec::as_slice), &[]);
     let count = |head: &Explanation| traces.iter().filter(|list| is_named_in(head, list)).count();
-    heads.iter().map(|head| (head.said(), count(head))).collect()
+    heads.iter().map(|head| (head.statement(), count(head))).collect()
 }
 
 fn words(expected: &[(&Explanation, usize)]) -> Vec<(String, usize)> {
-    expected.iter().map(|(one, count)| (one.said(), *count)).collect()
+    expected.iter().map(|(one, count)| (one.statement(), *count)).collect()
 }
 
 #[test]
@@ -94,7 +94,7 @@ fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     assert_eq!(heads(&traces), words(&[(&half, 7)]));
     // Each of them says so.
     let likely = several(traces.iter().map(Vec::as_slice), &[]);
-    assert_eq!(settled(&traces[6], &likely, &[]).explanations[0].said(), half.said());
+    assert_eq!(settle_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
     // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
     let mut like = letter(Subject::ParticleOverlap, "other");
     like.claims.push("ParticleOverlap/pp-one-radius/".to_owned());
@@ -139,7 +139,7 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     let About::Polynomials { subjects, found } = &likely[0].about else { panic!("{likely:?}") };
     assert_eq!(*subjects, [Subject::HalfPlaneOverlap]);
     assert_eq!(*found, OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other)));
-    assert_eq!(settled(&traces[1], &likely, &[]).explanations[0].said(), forms[1].said());
+    assert_eq!(settle_trace(&traces[1], &likely, &[]).explanations[0].statement(), forms[1].statement());
 }
 
 /// Polynomials that are told beside something else are not told again.
@@ -150,7 +150,7 @@ fn what_is_told_second_is_not_told_once_more() {
     traces.extend(vec![vec![cut.clone()]; 7]);
     let told = heads(&traces);
     assert_eq!(told.len(), 2, "{told:?}");
-    assert!(told.contains(&(cut.said(), 7)), "{told:?}");
+    assert!(told.contains(&(cut.statement(), 7)), "{told:?}");
 }
 
 /// One trace in which a stage looks wrong follows from the formula that the others name.
@@ -209,11 +209,11 @@ fn forms_are_intersected_over_traces() {
         let claims = forms.map(|form| format!("EdgeOverlap/terms/{form}"));
         let found = OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other));
         let about = About::Polynomials { subjects: vec![Subject::EdgeOverlap], found };
-        said("letter", about, (5, 5), &claims.each_ref().map(String::as_str))
+        statement("letter", about, (5, 5), &claims.each_ref().map(String::as_str))
     };
     let traces = [of(["a", "b"]), of(["c", "b"]), of(["b", "d"])].map(|one| vec![one]);
     let told = several(traces.iter().map(Vec::as_slice), &[]);
-    assert_eq!(told.iter().map(Explanation::said).collect::<Vec<_>>(), ["EdgeOverlap/terms/b"]);
+    assert_eq!(told.iter().map(Explanation::statement).collect::<Vec<_>>(), ["EdgeOverlap/terms/b"]);
     assert!(traces.iter().all(|list| is_named_in(&told[0], list)));
 }
 
@@ -222,7 +222,7 @@ fn forms_are_intersected_over_traces() {
 fn what_the_starter_leaves_is_not_written_yet() {
     let zero = |subjects: &[Subject]| {
         let found = OfPolynomials::Guess(Guess::List(ListGuess::AllZero));
-        said("all-zero", About::Polynomials { subjects: subjects.to_vec(), found }, (5, 5), &[])
+        statement("all-zero", About::Polynomials { subjects: subjects.to_vec(), found }, (5, 5), &[])
     };
     let planes = [Subject::HalfPlaneOverlap, Subject::HalfPlaneApproach];
     let traces = [vec![row("loop-empty-succeeds", &[])], vec![zero(&planes)], vec![zero(&planes)]];
@@ -258,7 +258,7 @@ fn another_mistake_has_its_own_exact_form() {
 fn where_numbers_end_comes_behind_what_is_proven() {
     let end = |step, stage| {
         let found = NotFinite { step: Some(step), stage, is_nan: true, ends: false };
-        said(Explanation::NOT_FINITE, About::NotFinite(found), (0, 0), &[])
+        statement(Explanation::NOT_FINITE, About::NotFinite(found), (0, 0), &[])
     };
     let first = row("pp-no-two", &[]);
     let traces = [
@@ -267,8 +267,11 @@ fn where_numbers_end_comes_behind_what_is_proven() {
         vec![end(9, NanStage::Zones)],
     ];
     let told = several(traces.iter().map(Vec::as_slice), &[]);
-    assert_eq!(told.iter().map(Explanation::said).collect::<Vec<_>>(), [first.said(), end(1, NanStage::Zones).said()]);
+    assert_eq!(
+        told.iter().map(Explanation::statement).collect::<Vec<_>>(),
+        [first.statement(), end(1, NanStage::Zones).statement()]
+    );
     assert!(matches!(told[1].about, About::NotFinite(NotFinite { step: None, .. })));
-    let of_third = settled(&traces[2], &told, &[]).explanations;
+    let of_third = settle_trace(&traces[2], &told, &[]).explanations;
     assert!(matches!(of_third[0].about, About::NotFinite(NotFinite { step: Some(9), .. })), "{of_third:?}");
 }

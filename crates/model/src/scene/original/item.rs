@@ -43,12 +43,12 @@ impl<'e> Item<'e> {
 
     /// Returns an integer; `value of` is in both messages.
     pub(super) fn index(&self, name: &str) -> Result<i32, Refusal> {
-        self.required(name, "value of ", "integer", values::integer)
+        self.require(name, "value of ", "integer", values::integer)
     }
 
     /// Returns a scalar; `value of` is only in the message about a bad one.
     pub(super) fn numeric(&self, name: &str) -> Result<f64, Refusal> {
-        self.required(name, "", "numeric", values::scalar)
+        self.require(name, "", "numeric", values::scalar)
     }
 
     /// Returns two scalars of the sort of [`Item::numeric`].
@@ -58,12 +58,12 @@ impl<'e> Item<'e> {
 
     /// Returns two scalars called real numbers; `value of` is in both messages.
     pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
-        let real = |name| self.required(name, "value of ", "real number", values::scalar);
+        let real = |name| self.require(name, "value of ", "real number", values::scalar);
         Ok(Vec2::new(real(x)?, real(y)?))
     }
 
     pub(super) fn boolean(&self, name: &str) -> Result<bool, Refusal> {
-        self.required(name, "", "boolean", values::boolean)
+        self.require(name, "", "boolean", values::boolean)
     }
 
     /// Returns an optional scalar whose message lacks `value of`.
@@ -79,7 +79,7 @@ impl<'e> Item<'e> {
     /// Returns the color in `r`, `g`, `b`, each checked before the next is read.
     pub(super) fn color(&self) -> Result<Color, Refusal> {
         let component = |name: &str| {
-            let value = self.required(name, "value of ", "scalar", values::scalar)?;
+            let value = self.require(name, "value of ", "scalar", values::scalar)?;
             if (0.0..=1.0).contains(&value) {
                 Ok(value)
             } else {
@@ -95,7 +95,7 @@ impl<'e> Item<'e> {
         Refusal::message(text.as_bytes(), self.exit_code)
     }
 
-    fn required<T>(
+    fn require<T>(
         &self,
         name: &str,
         of_missing: &str,

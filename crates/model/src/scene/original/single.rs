@@ -107,7 +107,7 @@ impl<'e> Singles<'e> {
             }),
             Some(b"hybrid") => Ok(Collision::Hybrid {
                 restitution,
-                max_iterations: values::truncated(number("maxiters", 10.0)?),
+                max_iterations: values::truncate(number("maxiters", 10.0)?),
                 stiffness: number("k", 10.0)?,
                 thickness: number("thickness", 0.1)?,
             }),

@@ -35,7 +35,7 @@ pub(super) fn boolean(text: &[u8]) -> Option<bool> {
 }
 
 /// Returns a scalar's conversion to a 32-bit integer: toward zero, and the smallest integer when it does not fit.
-pub(super) fn truncated(value: f64) -> i32 {
+pub(super) fn truncate(value: f64) -> i32 {
     let whole = value.trunc();
     if whole >= f64::from(i32::MIN) && whole <= f64::from(i32::MAX) {
         #[expect(clippy::cast_possible_truncation, reason = "whole and in range")]
@@ -113,9 +113,9 @@ mod tests {
 
     #[test]
     fn a_scalar_is_truncated_toward_zero() {
-        assert_eq!(truncated(-1.9), -1);
-        assert_eq!(truncated(2_147_483_647.9), i32::MAX);
-        assert_eq!(truncated(2_147_483_648.0), i32::MIN);
-        assert_eq!(truncated(-1e300), i32::MIN);
+        assert_eq!(truncate(-1.9), -1);
+        assert_eq!(truncate(2_147_483_647.9), i32::MAX);
+        assert_eq!(truncate(2_147_483_648.0), i32::MIN);
+        assert_eq!(truncate(-1e300), i32::MIN);
     }
 }

@@ -112,7 +112,7 @@ impl Detector {
         let begin = self.counts.work();
         let is_slow = have_subnormal_products(q_start) || have_subnormal_products(&self.displacements);
         let (mut place, mut hits) = (PassCursor::from_first(0), 0);
-        if self.has_lanes && !matches!(observer.wanted(), WantedPairs::Calls) {
+        if self.has_lanes && !matches!(observer.wanted_pairs(), WantedPairs::Calls) {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
         let mut context = PassContext { pass, bodies, q_start, q_end, observer, react, hits };
@@ -152,7 +152,7 @@ impl Detector {
         let mut hits = 0;
         while is_on {
             let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
-            let bytes = match observer.wanted() {
+            let bytes = match observer.wanted_pairs() {
                 WantedPairs::Bytes(bytes) => Some(bytes),
                 WantedPairs::Calls | WantedPairs::Nothing => None,
             };
@@ -190,7 +190,7 @@ impl Detector {
             time => Decision::Miss { time },
         };
         let PassContext { pass, bodies, q_start, ref q_end, ref mut observer, .. } = *context;
-        let decision = match observer.wanted() {
+        let decision = match observer.wanted_pairs() {
             WantedPairs::Calls => {
                 let decision = observer.steers().map_or(decision, |steer| steer.decide(pair, decision));
                 observer.detection(&Detection { pass, pair, polynomials, decision, q_start, q_end, velocities: &[] });

@@ -28,7 +28,7 @@ pub(super) fn handle<O: Observer>(
     let pass = Pass { stage: Stage::Simple, index: 0 };
     let State { positions: x, velocities: v } = state;
     observer.begin_pass(pass);
-    let mut found = match observer.wanted() {
+    let mut found = match observer.wanted_pairs() {
         WantedPairs::Calls => None,
         WantedPairs::Bytes(_) | WantedPairs::Nothing => nearby.and_then(|nearby| nearby.find(x)),
     };

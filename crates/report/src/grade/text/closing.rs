@@ -2,8 +2,8 @@
 use super::{Text, verdict_look};
 use crate::foreign::{one_line, plain};
 use crate::{
-    grade::{by_cause, change_lines, likely_mistakes, points, reached, speed_words, worth, wrong_scenes},
-    number::counted,
+    grade::{by_cause, change_lines, format_points, likely_mistakes, points, speed_words, worth, wrong_scenes},
+    number::format_count,
     style::Look,
     table::{Align, Cell, Table},
     words,
@@ -30,7 +30,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     }
     if let Some(located) = &grade.located {
         let heading = style.paint(Look::Strong, "Where it fails");
-        let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::located(located)));
+        let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
     // A fault of the submission itself explains everything.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
@@ -77,7 +77,7 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
     for group in listed.iter().take(shown) {
         let name = one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
-        let score = format!("{} of {}{extra}", reached(group.points), points(group.max_points));
+        let score = format!("{} of {}{extra}", format_points(group.points), points(group.max_points));
         table.row([
             name.into(),
             score.into(),
@@ -90,7 +90,7 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
         let _ = writeln!(text, "  {}: {}", one_line(&group.name), speed_words(speed));
     }
     if shown < listed.len() {
-        let _ = writeln!(text, "  and {}", counted((listed.len() - shown) as u64, "more group"));
+        let _ = writeln!(text, "  and {}", format_count((listed.len() - shown) as u64, "more group"));
     }
     text
 }
@@ -108,5 +108,5 @@ fn share(group: &GroupGrade) -> String {
         };
     }
     let rest = if not_run > 0 { format!(", {not_run} not run") } else { String::new() };
-    format!("{accepted} of {} accepted{rest}", counted(all as u64, "scene"))
+    format!("{accepted} of {} accepted{rest}", format_count(all as u64, "scene"))
 }

@@ -4,11 +4,11 @@ mod closing;
 mod scenes;
 mod table;
 
-pub use table::{shortened, table};
+pub use table::{shorten_name, table};
 
 use super::{super::style::Style, no_points, points, score};
-use crate::foreign::{one_line, plain, printed};
-use crate::{number::counted, smallest, style::Look, words};
+use crate::foreign::{clean_output, one_line, plain};
+use crate::{number::format_count, smallest, style::Look, words};
 use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
@@ -54,7 +54,7 @@ impl Text<'_> {
         if self.shown == TextDetail::Table && grades.len() > 1 {
             let unfit = |grade: &Grade| {
                 let why = self.unfit(grade)?;
-                Some(format!("{}: {why}\n", table::shortened(&one_line(&grade.submission))))
+                Some(format!("{}: {why}\n", table::shorten_name(&one_line(&grade.submission))))
             };
             return table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
         }
@@ -144,10 +144,10 @@ fn rules(grade: &Grade) -> String {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
         (Rules::Fair | Rules::Both, 0) => String::new(),
         (Rules::Fair, differing) => {
-            format!(", by the fair rules (the original's differ in {})", counted(differing, "scene"))
+            format!(", by the fair rules (the original's differ in {})", format_count(differing, "scene"))
         }
         (Rules::Both, differing) => {
-            format!(", by the original's rules (the fair rules differ in {})", counted(differing, "scene"))
+            format!(", by the original's rules (the fair rules differ in {})", format_count(differing, "scene"))
         }
     }
 }
@@ -163,7 +163,7 @@ const fn verdict_look(verdict: Verdict) -> Look {
 
 /// Returns the lines of program output, marked so that they can't be taken for ours.
 fn output(output: &str, most: usize) -> String {
-    let output = printed(output);
+    let output = clean_output(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();
     if output.lines().count() > most {
         lines.push("      | ...".to_owned());

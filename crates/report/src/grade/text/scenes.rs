@@ -4,8 +4,8 @@ use super::{super::phrases::some, Text, TextDetail, output, verdict_look};
 use crate::foreign::one_line;
 use crate::{
     explain,
-    grade::{AlikeScenes, by_cause, difference, points, reached, text::SHOWN_LINES},
-    number::counted,
+    grade::{AlikeScenes, by_cause, difference, format_points, points, text::SHOWN_LINES},
+    number::format_count,
     style::Look,
     words,
     wrap::columns,
@@ -42,7 +42,7 @@ impl<'a> Scenes<'a, '_> {
         let style = self.options.style;
         let name = style.paint(Look::Strong, &one_line(&group.name));
         let extra = if group.extra { " extra" } else { "" };
-        let mut text = format!("\n{name} ({} of {}{extra})\n", reached(group.points), points(group.max_points));
+        let mut text = format!("\n{name} ({} of {}{extra})\n", format_points(group.points), points(group.max_points));
         if let Some(note) = &group.note {
             text += &format!("  {}\n", one_line(&note.to_string()));
         }
@@ -54,7 +54,7 @@ impl<'a> Scenes<'a, '_> {
         }
         let row = |((verdict, like), count): ((Verdict, String), u64)| {
             let code = style.paint(verdict_look(verdict), &format!("{:<3}", verdict.code()));
-            format!("  {code} {}{like}\n", counted(count, "scene"))
+            format!("  {code} {}{like}\n", format_count(count, "scene"))
         };
         if folded.first_key_value().is_some_and(|((verdict, _), _)| verdict.is_accepted()) {
             text.extend(folded.pop_first().map(row));
@@ -84,7 +84,7 @@ impl<'a> Scenes<'a, '_> {
         let (name, style) = (one_line(&scene.scene), self.options.style);
         let code = style.paint(verdict_look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
         let blanks = " ".repeat(self.width.saturating_sub(columns(&name)));
-        format!("  {code} {name}{blanks}  {} of {}\n", reached(scene.points), points(scene.max_points))
+        format!("  {code} {name}{blanks}  {} of {}\n", format_points(scene.points), points(scene.max_points))
     }
 
     fn details(&self, scene: &SceneGrade) -> String {
@@ -102,7 +102,7 @@ impl<'a> Scenes<'a, '_> {
             && !alike.is_empty()
         {
             let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
-            let (many, names) = (counted(alike.len() as u64, "more scene"), some(&names, NAMED));
+            let (many, names) = (format_count(alike.len() as u64, "more scene"), some(&names, NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();

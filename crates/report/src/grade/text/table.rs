@@ -1,7 +1,7 @@
 //! A class at a glance: one row per submission.
 use crate::foreign::one_line;
 use crate::{
-    grade::reached,
+    grade::format_points,
     style::{Look, Style},
     wrap::columns,
 };
@@ -21,14 +21,14 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
         TextColumn { cells, right }
     };
-    let name = of("submission", false, &|grade| shortened(&one_line(&grade.submission)));
-    let score = of("points", true, &|grade| reached(grade.points));
+    let name = of("submission", false, &|grade| shorten_name(&one_line(&grade.submission)));
+    let score = of("points", true, &|grade| format_points(grade.points));
     let verdict = of("verdict", false, &|grade| grade.verdict.name().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
     let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
         of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
     };
-    let before = since("before", &|changes| reached(changes.points));
+    let before = since("before", &|changes| format_points(changes.points));
     let right = since("right", &|changes| format!("+{}", changes.right.len()));
     let broke = since("broke", &|changes| format!("-{}", changes.broke.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
@@ -37,7 +37,7 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
             let name = if is_tests { names[number].trim_end_matches(TESTS) } else { names[number] };
-            of(&shortened(&one_line(name)), false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
+            of(&shorten_name(&one_line(name)), false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
         })
         .collect();
     let scenes = of("scenes", true, &|grade| {
@@ -65,7 +65,7 @@ const NAME: usize = 40;
 
 /// Returns a name that widens no table.
 #[must_use]
-pub fn shortened(name: &str) -> String {
+pub fn shorten_name(name: &str) -> String {
     const ENDS: usize = NAME / 2 - 2;
     if columns(name) <= NAME {
         return name.to_owned();
@@ -135,11 +135,11 @@ mod tests {
 
     #[test]
     fn a_long_name_widens_no_table() {
-        assert_eq!(shortened("a short name"), "a short name");
+        assert_eq!(shorten_name("a short name"), "a short name");
         let long = format!("team-{}-17", "x".repeat(180));
-        let shown = shortened(&long);
+        let shown = shorten_name(&long);
         assert!(columns(&shown) <= NAME && shown.starts_with("team-x") && shown.ends_with("x-17"), "{shown}");
-        let wide = shortened(&"界".repeat(90));
+        let wide = shorten_name(&"界".repeat(90));
         assert!(columns(&wide) <= NAME && wide.contains("..."), "{wide}");
     }
 }

@@ -18,7 +18,7 @@ pub(crate) use places::place;
 #[must_use]
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
-        About::Mistake => known(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key)),
+        About::Mistake => known_sentence(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key)),
         About::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
         About::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
@@ -37,7 +37,7 @@ pub fn what(explanation: &Explanation) -> String {
 #[must_use]
 pub fn what_or(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
-    let rivals: Vec<String> = rivals.filter_map(|key| known(key)).collect();
+    let rivals: Vec<String> = rivals.filter_map(|key| known_sentence(key)).collect();
     let sentence = what(explanation);
     match rivals.as_slice() {
         [] => sentence,
@@ -97,7 +97,7 @@ pub(crate) fn is_known(explanation: &Explanation) -> bool {
 }
 
 /// Returns the sentence about a known mistake.
-pub(crate) fn known(key: &str) -> Option<String> {
+pub(crate) fn known_sentence(key: &str) -> Option<String> {
     find(key).map(Row::sentence)
 }
 

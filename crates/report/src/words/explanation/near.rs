@@ -1,5 +1,5 @@
 //! Sentences about a contest's search for near pairs.
-use crate::number::{count, counted};
+use crate::number::{count, format_count};
 use fosssim_findings::PairWords;
 use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
 use fosssim_model::sim::PairKind;
@@ -64,7 +64,7 @@ pub(super) fn details(wrong: &WrongPairs) -> Vec<String> {
         let numbers =
             format!("Pairs that are {}: {}. Reported once: {}.", happens(fault.times), count(wrong), count(right));
         let traits = fault.traits.iter().map(|one| {
-            let others = counted(right, "other");
+            let others = format_count(right, "other");
             format!("{}: also in {} of {others}.", one.exact, count(one.right))
         });
         std::iter::once(numbers).chain(traits).collect::<Vec<_>>()

@@ -3,7 +3,7 @@
 use crate::diagnose::{
     Explanation, explain,
     known::{
-        known,
+        find_known,
         shown::{applicable, is_of_states},
     },
 };
@@ -84,7 +84,7 @@ fn every_mistake_of_states_is_named_and_taken_for_no_other() {
             if trace.len() == correct.len() {
                 asked.insert(row.id);
             }
-            let told = if trace == correct { Vec::new() } else { known(&scene, &trace[..]) };
+            let told = if trace == correct { Vec::new() } else { find_known(&scene, &trace[..]) };
             if names(&told, row.id) {
                 named.insert(row.id);
             } else if let Some(one) = told.first() {

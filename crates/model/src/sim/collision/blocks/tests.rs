@@ -21,13 +21,13 @@ impl Observer for Log {
         self.impulses.clear();
         self.states.clear();
     }
-    fn wanted(&mut self) -> WantedPairs<'_> {
+    fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Bytes(&mut self.polynomials)
     }
     fn impulse(&mut self, impulse: &Impulse) {
         self.impulses.push(*impulse);
     }
-    fn synchronized(&mut self, state: &State) {
+    fn synchronization(&mut self, state: &State) {
         self.end_step(0, state);
     }
     fn end_step(&mut self, _step: u32, state: &State) {

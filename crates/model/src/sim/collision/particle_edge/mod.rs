@@ -29,7 +29,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize;
     let y1 = at(q_start, i) + time * v1;
     let y2 = at(q_start, first) + time * v2;
     let y3 = at(q_start, second) + time * v3;
-    let alpha = beside(y1, y2, y3);
+    let alpha = nearest_parameter(y1, y2, y3);
     let on_edge = v2 + alpha * (v3 - v2);
     exchange(bodies, law.factor, law.time_step, [i, first, second], alpha, on_edge - v1, unit(n))
 }
@@ -39,7 +39,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize;
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usize) -> Option<Vec2> {
     let [first, second] = bodies.edges[edge];
     let (x1, x2, x3) = (at(x, i), at(x, first), at(x, second));
-    let alpha = beside(x1, x2, x3);
+    let alpha = nearest_parameter(x1, x2, x3);
     let n = (x2 + alpha * (x3 - x2)) - x1;
     if length(n) < bodies.radii[i] + bodies.edge_radii[edge] {
         let (v1, v2, v3) = (at(v, i), at(v, first), at(v, second));
@@ -58,7 +58,7 @@ pub(super) fn simple_response(
     [first, second]: [usize; 2],
     n: Vec2,
 ) -> Response {
-    let alpha = beside(at(x, i), at(x, first), at(x, second));
+    let alpha = nearest_parameter(at(x, i), at(x, first), at(x, second));
     let (v1, v2, v3) = (at(v, i), at(v, first), at(v, second));
     let on_edge = v2 + alpha * (v3 - v2);
     exchange(bodies, factor, 0.0, [i, first, second], alpha, on_edge - v1, unit(n))
@@ -66,7 +66,7 @@ pub(super) fn simple_response(
 
 /// Returns the parameter in [0, 1] of the point of the edge from `y2` to `y3` that is nearest to `y1`; 0 for NaN.
 #[inline]
-fn beside(y1: Vec2, y2: Vec2, y3: Vec2) -> f64 {
+fn nearest_parameter(y1: Vec2, y2: Vec2, y3: Vec2) -> f64 {
     let edge = y3 - y2;
     clamp((y1 - y2).dot(&edge) / edge.dot(&edge))
 }
