@@ -185,8 +185,8 @@ fn sandbox() {
     let graded = middle(Box::new(|| cpu(Command::new(grader).args(["grade", sample, "--suite", "suite.toml"]))));
     let checked = middle(Box::new(|| cpu(Command::new(grader).args(["check", "scene.xml", "trace.bin"]))));
     println!(
-        "- A sample submission needs {:.0} ms of processor time, {:.0} ms when graded (of which judging the trace takes \
-         {:.0} ms): the sandbox adds {:.0} %.",
+        "- A sample submission needs {:.0} ms of processor time, {:.0} ms when graded (of which judging the trace \
+         takes {:.0} ms): the sandbox adds {:.0} %.",
         ms(alone),
         ms(graded),
         ms(checked),

@@ -147,8 +147,8 @@ mod _native {
         Ok([&impulses, &polynomials, &coefficients].map(|packed| PyBytes::new(py, packed)))
     }
 
-    /// Returns the contents of a scene: duration, time step, steps, records of each; positions, velocities, masses and radii of
-    /// particles as doubles; whether each is fixed, a byte each; the ends of edges as pairs.
+    /// Returns the contents of a scene: duration, time step, steps, records of each; positions, velocities, masses and
+    /// radii of particles as doubles; whether each is fixed, a byte each; the ends of edges as pairs.
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "a tuple that Python names")]
     fn scene<'py>(

@@ -26,8 +26,9 @@ const MOST: usize = Student::MOST;
     version,
     after_help = "The mistake may also be given by the environment variable FOSSSIM_SAMPLE_MISTAKE, or by a copy or \
                   link of this program that is called fosssim-sample.ID. --mistake wins over the name, the name over \
-                  the variable. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake in any case.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program would \
-                  never have ended here."
+                  the variable. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake in any \
+                  case.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program \
+                  would never have ended here."
 )]
 pub struct Options {
     /// The scene, an XML file.

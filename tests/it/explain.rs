@@ -6,7 +6,7 @@ use super::{
     workspace::Workspace,
 };
 use fosssim_oracle::{
-    diagnose::{ExamplePlace, Explanation, explain, find_known, formula_in, several},
+    diagnose::{ExamplePlace, Explanation, explain, explain_together, find_known, formula_in},
     judge::{fair::FairVerdict, replay},
     scene::{Scene, original},
     sim::PairKind,
@@ -66,7 +66,7 @@ fn nine_of_ten_mistakes_are_named_first() {
         .par_iter()
         .map(|row| {
             let all = explained(&scenes, row);
-            let first = several(all.iter().map(Vec::as_slice), &[]).into_iter().next();
+            let first = explain_together(all.iter().map(Vec::as_slice), &[]).into_iter().next();
             match first {
                 Some(first) if first.key == row.id => None,
                 Some(first) => Some(format!("{}: {} {:?}", row.id, first.key, first.same_as)),

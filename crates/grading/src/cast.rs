@@ -117,7 +117,7 @@ fn act(job: &Job) -> FakeRun {
             FakeRun { ended, ..FakeRun::wrote([&right_trace(job)[..], &vec![b'x'; more]].concat()) }
         }
         Some("flood-of-nonsense") => FakeRun::wrote(vec![0xff; 2 * SMALL_TRACE]),
-        Some("hostile") => FakeRun::ended(RunEnd::Violation { call: "ptrace".to_owned() }),
+        Some("hostile") => FakeRun::with_end(RunEnd::Violation { call: "ptrace".to_owned() }),
         name => panic!("no part for {name:?}"),
     }
 }

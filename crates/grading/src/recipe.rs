@@ -166,7 +166,8 @@ mod tests {
 
     /// Stages as a suite without a build does.
     fn staged(stage: impl FnOnce(Recipe<'_>) -> Result<StagedProgram, String>) -> StagedProgram {
-        let (backend, cancellation) = (Backend::fake(|_| FakeRun::ended(RunEnd::Exited(0))), Cancellation::default());
+        let (backend, cancellation) =
+            (Backend::fake(|_| FakeRun::with_end(RunEnd::Exited(0))), Cancellation::default());
         stage(Recipe { program: "FOSSSim", build: None, backend: &backend, cancellation: &cancellation }).unwrap()
     }
 

@@ -173,7 +173,7 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
         let fits = match keys.iter().find(|Key(name, ..)| key.get_ref() == name) {
             Some(Key(name, kind, _)) => fits(name, kind, &mut value, problems),
             None => {
-                problems.push((key.span(), unknown(key.get_ref(), keys, place)));
+                problems.push((key.span(), describe_unknown(key.get_ref(), keys, place)));
                 false
             }
         };
@@ -272,7 +272,7 @@ fn list_words(words: &[&str], last: &str) -> String {
 }
 
 /// Returns the message for a key that does not belong here.
-fn unknown(key: &str, keys: &[Key], place: &str) -> String {
+fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);
     let hint = match closest(key, here.clone()) {

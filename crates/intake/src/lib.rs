@@ -5,10 +5,10 @@
 //! tools make by themselves are passed over.
 //!
 //! ```
-//! use fosssim_intake::{FileKind, described};
+//! use fosssim_intake::{FileKind, describe};
 //!
 //! assert_eq!(FileKind::from_start(b"#!/bin/sh"), FileKind::Program);
-//! assert_eq!(described(b"MZ\x90"), "a program for Windows");
+//! assert_eq!(describe(b"MZ\x90"), "a program for Windows");
 //! ```
 #![forbid(unsafe_code)]
 

@@ -38,7 +38,6 @@ pub mod recorded;
 pub mod replay;
 #[cfg(test)]
 mod samples;
-pub mod share;
 pub mod study;
 mod tally;
 

@@ -45,20 +45,20 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
             _ => {}
         }
         let Some(place) = FLAGS.iter().position(|flag| is(flag, word)) else {
-            return Err(wrong(program, word, b"Couldn't find match for argument"));
+            return Err(wrong_argument(program, word, b"Couldn't find match for argument"));
         };
         let flag = &FLAGS[place];
         let title = format!("-{} (--{})", flag.letter, flag.name);
         if values[place].is_some() {
-            return Err(wrong(program, title.as_bytes(), b"Argument already set!"));
+            return Err(wrong_argument(program, title.as_bytes(), b"Argument already set!"));
         }
         let Some(value) = words.next() else {
-            return Err(wrong(program, title.as_bytes(), b"Missing a value for this argument!"));
+            return Err(wrong_argument(program, title.as_bytes(), b"Missing a value for this argument!"));
         };
         if flag.boolean
             && let Err(text) = boolean(value)
         {
-            return Err(wrong(program, title.as_bytes(), &text));
+            return Err(wrong_argument(program, title.as_bytes(), &text));
         }
         values[place] = Some(value);
     }
@@ -122,7 +122,7 @@ fn unreadable(value: &[u8]) -> Vec<u8> {
     [b"Couldn't read argument value from string '", value, b"'"].concat()
 }
 
-fn wrong(program: &[u8], argument: &[u8], text: &[u8]) -> Ending {
+fn wrong_argument(program: &[u8], argument: &[u8], text: &[u8]) -> Ending {
     failure(program, &[b"Argument: ", argument].concat(), text)
 }
 

@@ -4,11 +4,11 @@
 //! verdict. Values serialize themselves; `view` has the versions of their schemas.
 //!
 //! ```
-//! use fosssim_report::{number::counted, style::Style, table::{Align, Table}};
+//! use fosssim_report::{number::format_count, style::Style, table::{Align, Table}};
 //!
 //! let mut table = Table::new([Align::Left, Align::Right]);
-//! table.row(["judged".into(), counted(12_345, "step").into()]);
-//! table.row(["wrong".into(), counted(1, "step").into()]);
+//! table.row(["judged".into(), format_count(12_345, "step").into()]);
+//! table.row(["wrong".into(), format_count(1, "step").into()]);
 //! assert_eq!(table.render(Style::Plain), "  judged   12 345 steps\n  wrong          1 step\n");
 //! ```
 #![forbid(unsafe_code)]
@@ -30,6 +30,7 @@ pub mod page;
 pub mod problems;
 pub mod scene;
 pub mod schemas;
+mod share;
 pub mod simulate;
 pub mod smallest;
 pub mod style;

@@ -4,7 +4,7 @@ pub mod explanation;
 
 mod located;
 
-use crate::{describe::no_result, number::format_count};
+use crate::{describe::no_result, number::format_count, share};
 pub use located::describe_located;
 
 use fosssim_findings::{
@@ -15,7 +15,7 @@ use fosssim_findings::{
         SceneResult, UnusableReason, WrongTrace,
     },
 };
-use fosssim_judge::{FindingKind, PairWords, Unreadable, share};
+use fosssim_judge::{FindingKind, PairWords, Unreadable};
 use fosssim_mistakes::together::likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
@@ -30,7 +30,7 @@ const NOT_FOUND: i32 = 127;
 #[must_use]
 pub fn summary(result: &SceneResult) -> String {
     match &result.reason {
-        Reason::Right => share::right(result.steps, number),
+        Reason::Right => share::describe_right(result.steps, number),
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
@@ -153,7 +153,7 @@ fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
         WrongTrace::Nothing => "the trace holds no polynomial and no collision: no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
-            format!("{}, first step {first}: {kind}", share::wrong(*wrong, steps, number))
+            format!("{}, first step {first}: {kind}", share::describe_wrong(*wrong, steps, number))
         }
         WrongTrace::Damaged => "the trace is damaged".to_owned(),
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),

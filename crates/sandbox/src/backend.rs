@@ -312,7 +312,7 @@ impl Backend {
                 match failure.errno {
                     // The program itself is larger than its memory may be.
                     libc::ENOMEM if failure.stage == wire::EXECUTE => {
-                        FakeRun::ended(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
+                        FakeRun::with_end(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
                     }
                     _ => Err(from_setup_failure(failure)),
                 }

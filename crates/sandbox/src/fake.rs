@@ -31,19 +31,19 @@ pub struct FakeRun {
 impl FakeRun {
     /// Returns a run that ended like this and wrote nothing.
     #[must_use]
-    pub fn ended(ended: RunEnd) -> Self {
+    pub fn with_end(ended: RunEnd) -> Self {
         Self { ended, trace: Vec::new(), stdout: Vec::new(), stderr: Vec::new(), cpu: Duration::ZERO, peak_memory: 0 }
     }
 
     /// Returns a run that exited with code 0 and wrote this trace.
     #[must_use]
     pub fn wrote(trace: impl Into<Vec<u8>>) -> Self {
-        Self { trace: trace.into(), ..Self::ended(RunEnd::Exited(0)) }
+        Self { trace: trace.into(), ..Self::with_end(RunEnd::Exited(0)) }
     }
 
     /// Returns a program that never ran.
     pub(super) fn could_not_start(problem: StartProblem) -> Self {
-        Self::ended(RunEnd::CouldNotStart(problem))
+        Self::with_end(RunEnd::CouldNotStart(problem))
     }
 
     pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<RunningProgram, SandboxError> {
@@ -75,7 +75,7 @@ mod tests {
     fn a_fake_answers_as_scripted_for_each_job() {
         let backend = Backend::fake(|job| match job.trace {
             Some(_) => FakeRun::wrote(*b"frames"),
-            None => FakeRun::ended(RunEnd::WallLimit),
+            None => FakeRun::with_end(RunEnd::WallLimit),
         });
         let folder = tempfile::tempdir().unwrap();
         let job = Job::new("program", folder.path());

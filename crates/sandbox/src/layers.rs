@@ -163,11 +163,11 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
             &format!("version {}", probe.landlock_abi),
             !(user && hidden),
             if user && hidden {
-                "use Linux 5.13 or newer with landlock among the kernel's lsm=; until then namespaces alone hide the host's \
-                 files"
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=; until then namespaces alone hide the \
+                 host's files"
             } else if user {
-                "use Linux 5.13 or newer with landlock among the kernel's lsm=, or let the grader make namespaces: without \
-                 either, programs read whatever every user can read, this grader included"
+                "use Linux 5.13 or newer with landlock among the kernel's lsm=, or let the grader make namespaces: \
+                 without either, programs read whatever every user can read, this grader included"
             } else {
                 "use Linux 5.13 or newer with landlock among the kernel's lsm=, or grade as root"
             },
@@ -208,8 +208,8 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
             probe.namespaces.clone(),
             "a run sees its own processes and files only, and no network",
             false,
-            "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an ordinary \
-             user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",
+            "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an \
+             ordinary user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",
         ),
         report(
             Layer::ControlGroup,

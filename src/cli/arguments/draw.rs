@@ -26,8 +26,8 @@ Example:
   fosssim-oracle render scenes/creative.xml --format png --output pngs --size 1280x720
 
 Without a trace the reference's own run is drawn. Bodies have the scene's colors, and the scene's viewport is shown; \
-without one the view holds the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes them, \
-or SVG files as its -m does. Films of more than 1500 pictures are thinned out unless --every says how.")]
+without one the view holds the whole motion. A folder gets frame00001.png and so on, as the original's -g 1 writes \
+them, or SVG files as its -m does. Films of more than 1500 pictures are thinned out unless --every says how.")]
 pub(in crate::cli) struct RenderArguments {
     /// The scene, a file or asset:Group/name.
     pub(in crate::cli) scene: PathBuf,

@@ -43,10 +43,11 @@ the name that --program gives. A folder that holds such a program itself is one 
 one in any case. When the suite has a [build] table, folders and archives are built first. A program runs without the \
 files next to it.
 
-With --output, the folder keeps results as they come. (Several submissions always have one, fosssim-grades by default.) \
-An interrupted grading continues where it stopped. A scene is run again only if the program, the scene or the rules \
-changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, scenes.csv, \
-class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part are not a grade.")]
+With --output, the folder keeps results as they come. (Several submissions always have one, fosssim-grades by \
+default.) An interrupted grading continues where it stopped. A scene is run again only if the program, the scene or \
+the rules changed. The folder gets index.html (a class) or report.html to look at, grades.csv, grades.jsonl, \
+scenes.csv, class.txt and a log per run. With --scene or --failed it gets only the logs: points of a part \
+are not a grade.")]
 pub(in crate::cli) struct GradeArguments {
     /// Programs, or folders of submissions.
     #[arg(required = true)]

@@ -72,8 +72,8 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
 
 /// Returns the pair whose numbers were typed.
 fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
-    const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in a scene \
-                           (--scene, --step, --pair)";
+    const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
+                           a scene (--scene, --step, --pair)";
     let word = arguments.word.as_deref().context(NOTHING)?;
     pair::motion(word, arguments.radii.as_deref())
 }

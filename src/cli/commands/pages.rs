@@ -113,9 +113,9 @@ impl Pages {
 }
 
 /// The sentence above the card of a trace that was judged against a recording.
-const RECORDED: &str = "The verdict compares with the recording, where nearly everything after the first wrong step differs. What \
-                        follows judges each step from the trace's own state before it: what is wrong by itself, and what only \
-                        follows from that.";
+const RECORDED: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
+                        differs. What follows judges each step from the trace's own state before it: what is wrong by \
+                        itself, and what only follows from that.";
 
 /// Draws the card of a graded scene. Of a trace that was judged against a recording each step is judged once more, from
 /// the trace's own state.

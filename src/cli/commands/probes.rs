@@ -303,5 +303,5 @@ fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<E
         wrong.into_iter().map(|(case, task)| (&task.scene, case.explanations.as_slice())).collect();
     let right: Vec<&Scene> = right.into_iter().map(|(_, task)| &task.scene).collect();
     let refuted = diagnose::refuted_keys(Some(whose), &wrong, &right);
-    (diagnose::several(wrong.into_iter().map(|(_, explanations)| explanations), &refuted), refuted)
+    (diagnose::explain_together(wrong.into_iter().map(|(_, explanations)| explanations), &refuted), refuted)
 }

@@ -7,8 +7,8 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
     let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
     if !server.is_file() {
         bail!(
-            "there is no {}: install the package fosssim-server (docs/install.md), or build it next to this program with \
-             `cargo build --release -p fosssim-server`",
+            "there is no {}: install the package fosssim-server (docs/install.md), or build it next to this program \
+             with `cargo build --release -p fosssim-server`",
             server.display()
         );
     }

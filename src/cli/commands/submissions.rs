@@ -221,8 +221,8 @@ fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::printable_name(path);
         bail!(
-            "{name} is a scene, not a program. To run a program on it: fosssim-oracle explain --program FOSSSim {name}; \
-             to grade with it, list it in a suite (fosssim-oracle suite init) and give that with --suite"
+            "{name} is a scene, not a program. To run a program on it: fosssim-oracle explain --program FOSSSim \
+             {name}; to grade with it, list it in a suite (fosssim-oracle suite init) and give that with --suite"
         );
     }
     Ok(())

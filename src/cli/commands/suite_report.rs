@@ -44,7 +44,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     }
     text += &describe_contents(contents, style);
     text += &describe_mistakes(&contents.parts, style);
-    let unknown = unknown(plan, style);
+    let unknown = notes_on_unknown(plan, style);
     text += &unknown.concat();
     for (scene, found) in undecided {
         text += &note(scene, found, style);
@@ -228,7 +228,7 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
 }
 
 /// Returns a note for each scene that programs of the suite's milestone do not know to the end.
-fn unknown(plan: &Plan, style: Style) -> Vec<String> {
+fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     let milestone = plan.assignment();
     let note = style.paint(Look::Notice, "note");
     let scenes = plan.scenes().filter_map(|task| {

@@ -38,9 +38,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         None => scene_file(name).with_context(|| format!("cannot read the scene {shown}"))?,
     };
     if is_binary(&bytes) {
-        bail!(
-            "{shown} is not a scene but a trace, or other binary data: SCENE comes first, then TRACE where one is wanted"
-        );
+        bail!("{shown} is not a scene but a trace, or other binary data: SCENE comes first, then TRACE");
     }
     match scene::read(&shown, &bytes) {
         Ok(LoadedScene { scene, warnings, .. }) => {

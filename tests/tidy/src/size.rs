@@ -109,8 +109,8 @@ fn sizes() -> BTreeMap<String, usize> {
 
 #[test]
 fn lines_for_tests_are_no_code() {
-    let text = "//! A.\nuse b;\n\n#[cfg(test)]\nuse c::{\n    d,\n};\n\nfn e() {\n    f() // g\n}\n\n#[cfg(test)]\nmod tests {\n    \
-                use super::*;\n}\n#[cfg(test)]\nmod samples;\nconst H: u8 = 0;\n";
+    let text = "//! A.\nuse b;\n\n#[cfg(test)]\nuse c::{\n    d,\n};\n\nfn e() {\n    f() // g\n}\n\n#[cfg(test)]\nmod \
+                tests {\n    use super::*;\n}\n#[cfg(test)]\nmod samples;\nconst H: u8 = 0;\n";
     assert_eq!((code(text), test_modules(text).collect::<Vec<_>>()), (5, vec!["samples"]));
 }
 

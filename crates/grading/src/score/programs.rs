@@ -70,7 +70,7 @@ impl SubmissionGrading<'_> {
             ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
-            grade.located = common(&grade, || self.shared.contents(plan));
+            grade.located = locate_failure(&grade, || self.shared.contents(plan));
         }
         settle(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
@@ -140,7 +140,7 @@ fn is_wrong(result: &SceneResult) -> bool {
 
 /// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,
 /// computed only if some fail and some do not.
-fn common<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
+fn locate_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
     let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());

@@ -8,7 +8,7 @@
 use anyhow::Context;
 use fosssim_lab::runs::{WatchedScene, judge, trace};
 use fosssim_oracle::{
-    diagnose::{Explanation, find_known, several},
+    diagnose::{Explanation, explain_together, find_known},
     student::{CATALOGUE, Row, RowKind, Student},
 };
 use rayon::prelude::*;
@@ -107,7 +107,7 @@ fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {
         let traces = outcomes.iter().map(|(.., explanations)| explanations.as_slice());
-        match several(traces, &[]).into_iter().next() {
+        match explain_together(traces, &[]).into_iter().next() {
             Some(first) if first.key == row.id => {}
             Some(first) if first.same_as.iter().any(|id| id == row.id) => {
                 confused.push(format!("    {}: can't be told from {}", row.id, first.key));

@@ -26,7 +26,10 @@ const MANY: usize = 8;
 ///
 /// A scene alone often can't distinguish mistakes; several together nearly always can.
 #[must_use]
-pub fn several<'a>(traces: impl IntoIterator<Item = &'a [Explanation]>, refuted: &[String]) -> Vec<Explanation> {
+pub fn explain_together<'a>(
+    traces: impl IntoIterator<Item = &'a [Explanation]>,
+    refuted: &[String],
+) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
     // A stage of which one trace shows something is not empty, whatever the other traces look like.
     let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();

@@ -29,7 +29,7 @@ pub use fosssim_findings::explanation::{
 };
 use fosssim_findings::explanation::{about, fault, guess};
 pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
-pub use heads::several;
+pub use heads::explain_together;
 pub use known::{can_show, find_known, reproduces, shows};
 pub use naming::is_named_in;
 pub use near::{PairTrait, pair_traits};

@@ -1,7 +1,7 @@
 //! Finds mistakes that a program does not make, whatever its wrong traces suggest.
 use super::{
-    Explanation, about::About, heads::several, known::shows_within, naming::alternatives, not_finite::find_in_trace,
-    sampling::Source, written::is_written,
+    Explanation, about::About, heads::explain_together, known::shows_within, naming::alternatives,
+    not_finite::find_in_trace, sampling::Source, written::is_written,
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use fosssim_student::{Area, Student, find, trace_within};
@@ -40,10 +40,10 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
-/// Returns the keys of mistakes that [`several`] would report, or name as indistinguishable, and that the program does
-/// not make: they are in code that a student of this milestone does not write, or right scenes contradict them. The
-/// program was right there, and with the mistake it would not have been ([`shows`](super::known::shows)). Each
-/// integrator has a file of its own, so that only scenes with it show its mistakes. The key of values that are not
+/// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
+/// program does not make: they are in code that a student of this milestone does not write, or right scenes contradict
+/// them. The program was right there, and with the mistake it would not have been ([`shows`](super::known::shows)).
+/// Each integrator has a file of its own, so that only scenes with it show its mistakes. The key of values that are not
 /// numbers is included if the reported mistakes make such values themselves.
 #[must_use]
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
@@ -57,7 +57,7 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
         |key: &str, work: &Cell<u64>| right.iter().any(|scene| is_asked(scene, key) && shows_within(scene, key, work));
     let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied_keys(whose, wrong));
     loop {
-        let likely = several(traces(), &refuted);
+        let likely = explain_together(traces(), &refuted);
         // An explanation of unfinished work covers its stages.
         let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));

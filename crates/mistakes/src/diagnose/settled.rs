@@ -11,9 +11,9 @@ pub struct SettledTrace {
     pub agreed: usize,
 }
 
-/// Settles a trace's own explanations by those of all traces together ([`several`](super::several)). If any of these
-/// explains the trace, they replace the trace's own, which know less, but keep its counts and its example. Else the
-/// trace keeps its own, without those that are `refuted`.
+/// Settles a trace's own explanations by those of all traces together ([`explain_together`](super::explain_together)).
+/// If any of these explains the trace, they replace the trace's own, which know less, but keep its counts and its
+/// example. Else the trace keeps its own, without those that are `refuted`.
 #[must_use]
 pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreed(own, one));
@@ -66,7 +66,7 @@ fn find_agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::several;
+    use crate::diagnose::explain_together;
 
     fn named(key: &str, same_as: &[&str], counts: (u64, u64)) -> Explanation {
         Explanation {
@@ -90,7 +90,7 @@ mod tests {
         let alone = named("loop-empty", &["loop-one-fewer"], (2, 2));
         let other = named("pp-no-two", &[], (1, 4));
         let traces = [vec![alone.clone()], vec![short.clone()], vec![short.clone()]];
-        let likely = several(traces.iter().map(Vec::as_slice), &[]);
+        let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
         let of_first = settle_trace(&traces[0], &likely, &[]);
         assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
@@ -107,7 +107,7 @@ mod tests {
     #[test]
     fn a_scene_names_what_it_shows_of_what_is_not_written() {
         let traces = [vec![named("pp-empty", &[], (3, 3))], vec![named("ph-empty", &[], (3, 3))]];
-        let likely = several(traces.iter().map(Vec::as_slice), &[]);
+        let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely[0].key, Explanation::UNFINISHED);
         let of_second = settle_trace(&traces[1], &likely, &[]);
         assert_eq!((of_second.agreed, of_second.explanations), (1, traces[1].clone()));

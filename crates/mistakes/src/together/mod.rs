@@ -1,6 +1,6 @@
 //! The likely mistakes of one submission, which its scenes show together.
 
-use crate::diagnose::{is_named_in, settle_trace, several};
+use crate::diagnose::{explain_together, is_named_in, settle_trace};
 use fosssim_findings::{
     Hints, Visibility,
     explanation::Explanation,
@@ -110,10 +110,10 @@ pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
 
 /// Returns the likely mistakes, at most three, with the number of wrong scenes that each explains: first the mistake
 /// that explains most, then the mistake that explains most of the rest, provided that it explains those scenes
-/// completely ([`several`]).
+/// completely ([`explain_together`]).
 #[must_use]
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
-    several(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
+    explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
         .into_iter()
         .filter(|likely| {
             likely.reproduced > 0 || likely.is_of_stage() || likely.is_not_finite() || likely.is_unexplained()

@@ -350,8 +350,8 @@ fn methods_that_do_not_go_together() {
     for collision in ["<collision type='penalty'/>", "<collision type='hybrid'/>"] {
         assert_eq!(
             implicit("implicit-euler", collision),
-            "fine\n1:28: warning: `implicit-euler` with a penalty force (its Hessian is missing, so Newton's method may \
-             never converge)"
+            "fine\n1:28: warning: `implicit-euler` with a penalty force (its Hessian is missing, so Newton's method \
+             may never converge)"
         );
         assert_eq!(implicit("linearized-implicit-euler", collision), "fine");
     }

@@ -38,7 +38,7 @@ impl PassCursor {
 
     /// Returns the pair after one.
     #[inline]
-    pub const fn after(kind: PairKind, first: usize, second: usize) -> Self {
+    pub const fn following(kind: PairKind, first: usize, second: usize) -> Self {
         Self { first, kind, second: second + 1 }
     }
 }

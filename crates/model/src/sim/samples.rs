@@ -15,7 +15,7 @@ pub(crate) fn particle(position: (f64, f64), velocity: (f64, f64), mass: f64, ra
 }
 
 /// Returns the particle, fixed.
-pub(crate) fn fixed(particle: Particle) -> Particle {
+pub(crate) fn fix(particle: Particle) -> Particle {
     Particle { fixed: true, ..particle }
 }
 

@@ -124,7 +124,7 @@ mod tests {
         scene::{Collision, CollisionDetection, Force, Integrator, Particle},
         sim::{
             Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, Steer, Time, Zone,
-            samples::{edge, fixed, half_plane, particle, scene},
+            samples::{edge, fix, half_plane, particle, scene},
         },
     };
     use fosssim_num::vector::Vec2;
@@ -321,8 +321,8 @@ mod tests {
     #[test]
     fn two_fixed_particles_are_looked_at_too() {
         let mut scene = scene(vec![
-            fixed(particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
-            fixed(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fix(particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fix(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
         ]);
         scene.collision = Collision::ContinuousTime { restitution: 1.0 };
         let mut log = Log::default();
@@ -335,8 +335,8 @@ mod tests {
     fn later_pairs_of_a_pass_see_earlier_responses() {
         let mut scene = scene(vec![
             particle((0.0, 0.0), (2.0, 0.0), 1.0, 0.1),
-            fixed(particle((0.5, 0.0), (0.0, 0.0), 1.0, 0.1)),
-            fixed(particle((0.75, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fix(particle((0.5, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fix(particle((0.75, 0.0), (0.0, 0.0), 1.0, 0.1)),
         ]);
         scene.collision = Collision::ContinuousTime { restitution: 0.0 };
         let mut log = Log::default();

@@ -208,8 +208,8 @@ mod tests {
         let plot = PolynomialPlot { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
         let svg = plot.svg(Embedding::Alone);
         assert!(svg.contains(
-            "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to 1; the \
-             time of impact is 0.5. Each curve is scaled to its own largest value on the step.</desc>"
+            "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to \
+             1; the time of impact is 0.5. Each curve is scaled to its own largest value on the step.</desc>"
         ), "{svg}");
         insta::assert_snapshot!("curves", svg);
     }

@@ -1,6 +1,7 @@
 //! The fair rules' part of the check report, for people.
 use super::super::{
     number::{count, general},
+    share,
     style::{Look, Style},
     table::{Align, Table},
 };
@@ -8,7 +9,6 @@ use fosssim_findings::{BookFindings, Cause};
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
     fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
-    share,
 };
 
 /// Renders the section; empty if the fair rules did not judge.
@@ -94,7 +94,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let found = fair.findings.first_divergence.as_ref().map(|first| {
         let wrong = match fair.findings.wrong_steps {
             0 => "the first record is wrong".to_owned(),
-            many => share::wrong(many, outcome.steps, count),
+            many => share::describe_wrong(many, outcome.steps, count),
         };
         let first = match first.step {
             0 if fair.findings.wrong_steps == 0 => String::new(),
@@ -108,7 +108,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
-        parts if parts.is_empty() => share::right(outcome.steps, count),
+        parts if parts.is_empty() => share::describe_right(outcome.steps, count),
         parts => parts.join("; "),
     }
 }

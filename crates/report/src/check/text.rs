@@ -3,6 +3,7 @@ use super::{
     super::{
         explain,
         number::{count, format_count, general},
+        share,
         style::{Look, Style},
         table::{Align, Cell, Table},
         words,
@@ -11,7 +12,7 @@ use super::{
     first::{first, is_other_scene},
     follows, steps,
 };
-use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, WithoutResult, share};
+use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, WithoutResult};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
@@ -112,7 +113,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
         Overall::Passed if outcome.steps == 0 => "the scene has no step; there is nothing to get wrong".to_owned(),
-        Overall::Passed => format!("{} by the original's rules", share::right(outcome.steps, count)),
+        Overall::Passed => format!("{} by the original's rules", share::describe_right(outcome.steps, count)),
         Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
             format!("no single step of {steps} is wrong, but a residual is above its tolerance")
@@ -120,7 +121,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
         Overall::Failed => {
             let first = outcome.parity.findings.first_divergence.map_or(0, |finding| finding.step);
             let first = if outcome.steps == 1 { String::new() } else { format!(", the first is step {first}") };
-            share::wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
+            share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
         }
         Overall::None => {
             let judged = count(u64::from(outcome.judged_by(Book::Parity)));

@@ -64,7 +64,7 @@ impl CallContent<'_> {
     }
 
     /// Renders the decision of the trace's own polynomials, and their curves, where one of them is wrong.
-    fn own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
+    fn draw_own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
         let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
         let curves = match (wrong.next(), wrong.next()) {
             (None, _) => return String::new(),
@@ -114,7 +114,7 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     if sets.iter().all(|set| is_flat(set)) {
         return String::new();
     }
-    let common = common(logged);
+    let common = common_intervals(logged);
     let impact = common.iter().map(|set| set.lo).reduce(f64::min);
     let title = format!("Yours in step {step}: {}", PairWords(call.pair));
     let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
@@ -144,7 +144,7 @@ fn positive(own: &[f64]) -> Vec<Interval> {
 }
 
 /// Returns the intervals within the step in which all polynomials of a trace are positive.
-fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
+fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
     for own in logged.iter().map(|own| positive(own)) {
         let both = |one: &Interval, other: &Interval| Interval { lo: one.lo.max(other.lo), hi: one.hi.min(other.hi) };
@@ -156,7 +156,7 @@ fn common(logged: &[Vec<f64>]) -> Vec<Interval> {
 
 /// Returns the decision of the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
-    let says = match common(logged).iter().map(|set| set.lo).reduce(f64::min) {
+    let says = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
         Some(time) => format!("all are positive from time {} on: a collision", number(time)),
         None => "there is no time in the step at which all are positive: no collision".to_owned(),
     };

@@ -178,7 +178,7 @@ fn sort(points: Option<f64>) -> String {
 }
 
 /// Returns the points of an earlier grading.
-fn before(grade: &Grade) -> Option<f64> {
+fn points_before(grade: &Grade) -> Option<f64> {
     grade.changes()?.points
 }
 

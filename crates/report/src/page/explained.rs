@@ -70,7 +70,7 @@ struct Trace<'a> {
 
 impl ExplainedContent<'_> {
     /// Returns the mistakes that explain several traces, with their number; a single trace has these words itself.
-    fn common(&self) -> impl Iterator<Item = (&Explanation, usize)> {
+    fn shared_mistakes(&self) -> impl Iterator<Item = (&Explanation, usize)> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
         let explained = |one| cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
         common.iter().filter(|_| cases.len() > 1).map(move |one| (one, explained(one)))

@@ -100,8 +100,8 @@ fn document(title: &str, body: &str, script: &str) -> String {
     let style = style();
     let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
     let policy = format!(
-        "default-src 'none'; script-src {allowed}; style-src '{}'; img-src blob: data:; media-src blob:; base-uri 'none'; \
-         form-action 'none'",
+        "default-src 'none'; script-src {allowed}; style-src '{}'; img-src blob: data:; media-src blob:; base-uri \
+         'none'; form-action 'none'",
         digest(&style)
     );
     let title = markup::text(title);

@@ -22,8 +22,8 @@ pub(super) fn html(steps: &[Step]) -> String {
         }
     );
     let mut out = format!(
-        "<p>{words}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: {words}\" \
-         preserveAspectRatio=\"none\">"
+        "<p>{words}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: \
+         {words}\" preserveAspectRatio=\"none\">"
     );
     let columns = steps.len().min(COLUMNS);
     let worst = |column: usize| {

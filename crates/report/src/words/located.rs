@@ -63,8 +63,8 @@ mod tests {
         assert_eq!(
             describe_located(&found),
             "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the first of them, \
-             GeometricTests/chain, the last complete record is that of step 14. Just as likely: those with a step of hybrid \
-             (zones: one)."
+             GeometricTests/chain, the last complete record is that of step 14. Just as likely: those with a step of \
+             hybrid (zones: one)."
         );
         let some = LocatedFailure {
             failing: FailureKind::Several,
@@ -76,8 +76,9 @@ mod tests {
         };
         assert_eq!(
             describe_located(&some),
-            "7 of the 9 scenes in which the failsafe moves a zone (held by: a half-plane) crash or run into a limit, and none of \
-             the 61 others. In the first of them, GeometricTests/chain, the last complete record is the first one."
+            "7 of the 9 scenes in which the failsafe moves a zone (held by: a half-plane) crash or run into a limit, \
+             and none of the 61 others. In the first of them, GeometricTests/chain, the last complete record is the \
+             first one."
         );
     }
 }

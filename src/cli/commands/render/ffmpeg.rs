@@ -69,8 +69,8 @@ impl Ffmpeg {
         let list = match run {
             Ok(run) => String::from_utf8_lossy(&run.stdout).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
-                "an MP4 needs ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt install ffmpeg), or name \
-                 the output .gif, which needs nothing"
+                "an MP4 needs ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt install ffmpeg), \
+                 or name the output .gif, which needs nothing"
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };

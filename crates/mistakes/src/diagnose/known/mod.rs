@@ -116,7 +116,7 @@ fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut 
         if is_complete {
             return (explanation.into_iter().collect(), true);
         }
-        if let Some(several) = several::several(reference, scene, scan, correct) {
+        if let Some(several) = several::find_set(reference, scene, scan, correct) {
             return (together(reference, scene, scan, correct, &several), true);
         }
         partly = partly.or(explanation);

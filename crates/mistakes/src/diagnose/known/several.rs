@@ -27,7 +27,7 @@ pub(super) struct SeveralRows {
 }
 
 /// Returns the set of rows that reproduces all kept steps; `None` if none is found with at least two rows.
-pub(super) fn several(
+pub(super) fn find_set(
     reference: &Reference<'_>,
     scene: &Scene,
     scan: &Scan,

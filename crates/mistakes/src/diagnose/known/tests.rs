@@ -1,7 +1,7 @@
 //! Traces with mistakes, made in memory, and what is said of them.
 use super::{find_known, shows};
 use crate::diagnose::is_named_in;
-use crate::diagnose::{About, ExamplePlace, Explanation, explain, several};
+use crate::diagnose::{About, ExamplePlace, Explanation, explain, explain_together};
 use fosssim_judge::Role;
 use fosssim_model::{
     scene::{Scene, original},
@@ -205,8 +205,10 @@ fn a_right_scene_speaks_against_what_it_would_show() {
     assert!(shows(&scene(), "pp-no-two") && shows(&scene(), "pe-square-no-eh"));
     assert!(!shows(&scene(), "geometric-empty") && !shows(&scene(), "no-such-mistake"));
     let explanations = explain(&scene(), &made(&scene(), &["pp-no-two"]));
-    assert_eq!(several([explanations.as_slice()], &[])[0].key, "pp-no-two");
-    assert!(several([explanations.as_slice()], &["pp-no-two".to_owned()]).iter().all(|one| one.key != "pp-no-two"));
+    assert_eq!(explain_together([explanations.as_slice()], &[])[0].key, "pp-no-two");
+    assert!(
+        explain_together([explanations.as_slice()], &["pp-no-two".to_owned()]).iter().all(|one| one.key != "pp-no-two")
+    );
 }
 
 #[test]
@@ -218,7 +220,7 @@ fn mistakes_of_several_scenes_are_settled_together() {
         explanations
     };
     let (alone, other) = (said(&["pp-empty"]), said(&["pe-empty", "ph-empty"]));
-    let found = several([alone.as_slice(), other.as_slice()], &[]);
+    let found = explain_together([alone.as_slice(), other.as_slice()], &[]);
     assert_eq!((found.len(), found[0].key.as_str()), (1, Explanation::UNFINISHED), "{found:#?}");
     assert_eq!(
         (&found[0].about, &found[0].same_as[..]),
@@ -227,8 +229,10 @@ fn mistakes_of_several_scenes_are_settled_together() {
     assert!(is_named_in(&found[0], &alone) && is_named_in(&found[0], &other));
     let (one, two) =
         (explain(&scene(), &made(&scene(), &["pp-no-two"])), explain(&scene(), &made(&scene(), &["response-sign"])));
-    let found: Vec<String> =
-        several([one.as_slice(), one.as_slice(), two.as_slice()], &[]).into_iter().map(|found| found.key).collect();
+    let found: Vec<String> = explain_together([one.as_slice(), one.as_slice(), two.as_slice()], &[])
+        .into_iter()
+        .map(|found| found.key)
+        .collect();
     assert_eq!(found, ["pp-no-two", "response-sign"]);
 }
 

@@ -1,6 +1,6 @@
 //! Searches with mistakes by request, in the scenes of the contest's suite.
 use super::{pair_traits, traits};
-use crate::diagnose::{About, Explanation, PairCounts, WrongPairs, explain, several};
+use crate::diagnose::{About, Explanation, PairCounts, WrongPairs, explain, explain_together};
 use fosssim_model::{
     scene::{Collision, Scene, original},
     sim::PairKind,
@@ -20,7 +20,7 @@ fn told(id: &str, scenes: &[Scene]) -> WrongPairs {
     let student = Student::new(find(id).map(|row| row.mistake));
     let explained = |scene: &Scene| explain(scene, &trace(scene, student).expect("a trace"));
     let traces: Vec<Vec<Explanation>> = scenes.iter().map(explained).collect();
-    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    let told = explain_together(traces.iter().map(Vec::as_slice), &[]);
     let [Explanation { about: About::Pairs(wrong), .. }] = &told[..] else { panic!("{id}: {told:#?}") };
     wrong.clone()
 }

@@ -236,13 +236,13 @@ fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
 }
 
 /// Returns the part of an axis that two boxes have in common.
-fn common([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
+fn common_range([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
     [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
 }
 
 /// Returns how much the boxes overlap on an axis, as a share of the smaller box.
 fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
-    let [from, to] = common(pair.boxes(), axis);
+    let [from, to] = common_range(pair.boxes(), axis);
     let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);
     (to - from) / sides[0].min(sides[1])
 }
@@ -255,6 +255,6 @@ fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
 }
 
 fn have_common_border(pair: &PlacedPair<'_>, axis: usize, size: f64) -> bool {
-    let [from, to] = common(pair.boxes(), axis);
+    let [from, to] = common_range(pair.boxes(), axis);
     pair.half_plane().is_none() && (from / size).floor() != (to / size).floor()
 }

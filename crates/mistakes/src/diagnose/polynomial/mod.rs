@@ -70,7 +70,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     }
     let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
-    explanations.extend(open.iter().map(Suspect::alone));
+    explanations.extend(open.iter().map(Suspect::explanation));
     explanations.extend(explain_none(&hopeless));
     explanations.extend(missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
@@ -119,7 +119,7 @@ impl Suspect<'_> {
     }
 
     /// Returns the explanation of this polynomial for itself; it has a guess.
-    fn alone(&self) -> Explanation {
+    fn explanation(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.full());
         let first = claims(self.study.subject, best).swap_remove(0);
         let claims = std::iter::once(first).chain(self.claims(others));

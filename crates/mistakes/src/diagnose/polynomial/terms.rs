@@ -80,7 +80,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     Some(Candidate {
         guess: Guess::Coefficients {
             powers: guesses.iter().map(|guess| guess.power).collect(),
-            wrong: fitting.wrong(&guesses),
+            wrong: fitting.wrong_coefficient(&guesses),
         },
         details: guesses.iter().flat_map(|guess| fitting.details(guess)).collect(),
         forms: fitting.forms(&guesses),
@@ -281,7 +281,7 @@ impl Fitting<'_> {
         (expected, expected + change)
     }
 
-    fn wrong(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {
+    fn wrong_coefficient(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {
         let [guess] = guesses else { return CoefficientGuess::Several };
         match guess.edit() {
             Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,

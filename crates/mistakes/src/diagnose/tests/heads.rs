@@ -3,7 +3,7 @@ use crate::{
     diagnose::is_named_in,
     diagnose::{
         About, Detail, Explanation, Guess, ListGuess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault,
-        WrongMotion, WrongVectors, settle_trace, several,
+        WrongMotion, WrongVectors, explain_together, settle_trace,
     },
 };
 use fosssim_model::sim::PairKind;
@@ -49,7 +49,7 @@ fn stage(fault: StageFault) -> Explanation {
 
 /// The words of all heads, each with the number of traces that agree.
 fn heads(traces: &[Vec<Explanation>]) -> Vec<(String, usize)> {
-    let heads = several(traces.iter().map(Vec::as_slice), &[]);
+    let heads = explain_together(traces.iter().map(Vec::as_slice), &[]);
     let count = |head: &Explanation| traces.iter().filter(|list| is_named_in(head, list)).count();
     heads.iter().map(|head| (head.statement(), count(head))).collect()
 }
@@ -93,7 +93,7 @@ fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     traces.extend(vec![vec![row("pp-one-radius", &both)]; 4]);
     assert_eq!(heads(&traces), words(&[(&half, 7)]));
     // Each of them says so.
-    let likely = several(traces.iter().map(Vec::as_slice), &[]);
+    let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(settle_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
     // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
     let mut like = letter(Subject::ParticleOverlap, "other");
@@ -121,7 +121,7 @@ fn what_most_traces_speak_against_is_not_told() {
     assert_eq!(heads(&traces), [("unexplained".to_owned(), 7)], "only which polynomial it is");
     traces.extend(vec![vec![guess.clone()]; 9]);
     assert_eq!(heads(&traces), words(&[(&guess, 10)]));
-    let likely = several(traces.iter().map(Vec::as_slice), &[]);
+    let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
 }
 
@@ -133,7 +133,7 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     let behind = stage(StageFault::AfterRounds);
     let mut traces: Vec<Vec<Explanation>> = forms.iter().map(|one| vec![one.clone()]).collect();
     traces.push(vec![behind]);
-    let likely = several(traces.iter().map(Vec::as_slice), &[]);
+    let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(likely.len(), 1, "what is wrong behind a wrong formula follows: {likely:?}");
     assert!(likely[0].is_unexplained());
     let About::Polynomials { subjects, found } = &likely[0].about else { panic!("{likely:?}") };
@@ -176,17 +176,17 @@ fn what_a_trace_needs_besides_is_told() {
 #[test]
 fn mistakes_of_different_traces_are_no_rivals() {
     let (one, other) = (row("loop-one-more", &[]), row("failsafe-no-rotation", &[]));
-    let told = several([&[one.clone()][..], std::slice::from_ref(&other)], &[]);
+    let told = explain_together([&[one.clone()][..], std::slice::from_ref(&other)], &[]);
     assert_eq!(told.len(), 2, "{told:#?}");
     assert!(told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
     // Nor are mistakes that explain a trace together only.
-    let told = several([[one.clone(), other.clone()].as_slice()], &[]);
+    let told = explain_together([[one.clone(), other.clone()].as_slice()], &[]);
     assert!(told.len() == 2 && told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
     // Each trace that allows both leaves them side by side.
     let both = Explanation { same_as: vec![other.key.clone()], ..one.clone() };
-    let told = several([std::slice::from_ref(&both); 3], &[]);
+    let told = explain_together([std::slice::from_ref(&both); 3], &[]);
     assert_eq!((told[0].key.as_str(), &told[0].same_as[..]), ("loop-one-more", std::slice::from_ref(&other.key)));
-    let told = several([&[both][..], std::slice::from_ref(&one)], &[]);
+    let told = explain_together([&[both][..], std::slice::from_ref(&one)], &[]);
     assert_eq!((told.len(), told[0].same_as.len()), (1, 0), "one trace knows which: {told:#?}");
 }
 
@@ -195,7 +195,7 @@ fn mistakes_of_different_traces_are_no_rivals() {
 fn a_contact_vector_has_one_mistake() {
     let told_beside = |first: &str, second: &str| {
         let (first, second) = (vec![row(first, &[])], vec![row(second, &[])]);
-        let told = several([&first, &first, &second].map(Vec::as_slice), &[]);
+        let told = explain_together([&first, &first, &second].map(Vec::as_slice), &[]);
         told.into_iter().map(|one| one.key).collect::<Vec<_>>()
     };
     assert_eq!(told_beside("pe-contact-nearest-end", "pe-contact-second-end"), ["pe-contact-nearest-end"]);
@@ -212,7 +212,7 @@ fn forms_are_intersected_over_traces() {
         statement("letter", about, (5, 5), &claims.each_ref().map(String::as_str))
     };
     let traces = [of(["a", "b"]), of(["c", "b"]), of(["b", "d"])].map(|one| vec![one]);
-    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    let told = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(told.iter().map(Explanation::statement).collect::<Vec<_>>(), ["EdgeOverlap/terms/b"]);
     assert!(traces.iter().all(|list| is_named_in(&told[0], list)));
 }
@@ -226,7 +226,7 @@ fn what_the_starter_leaves_is_not_written_yet() {
     };
     let planes = [Subject::HalfPlaneOverlap, Subject::HalfPlaneApproach];
     let traces = [vec![row("loop-empty-succeeds", &[])], vec![zero(&planes)], vec![zero(&planes)]];
-    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    let told = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert!(told.len() == 1 && told[0].is_unfinished(), "{told:#?}");
     assert_eq!(told[0].same_as, ["ph-zero", "loop-empty-succeeds"]);
 }
@@ -236,7 +236,7 @@ fn what_the_starter_leaves_is_not_written_yet() {
 fn an_empty_stage_has_rivals_too() {
     let rival = "loop-always-succeeds".to_owned();
     let trace = [Explanation { same_as: vec![rival.clone()], ..row("geometric-empty", &[]) }];
-    let told = several([&trace[..]; 3], &[]);
+    let told = explain_together([&trace[..]; 3], &[]);
     assert_eq!((told.len(), told[0].key.as_str(), &told[0].same_as[..]), (1, "geometric-empty", &[rival][..]));
 }
 
@@ -249,7 +249,7 @@ fn another_mistake_has_its_own_exact_form() {
         ..row("penalty-half-planes-missing", &[])
     };
     let traces = [vec![all]];
-    let told = several(traces.iter().map(Vec::as_slice), &["penalty-half-planes-missing".to_owned()]);
+    let told = explain_together(traces.iter().map(Vec::as_slice), &["penalty-half-planes-missing".to_owned()]);
     assert_eq!(told[0].key, "penalty-first-half-plane-only");
     assert_eq!(told[0].details, [Detail::Term("penalty-first-half-plane-only".into())]);
 }
@@ -266,7 +266,7 @@ fn where_numbers_end_comes_behind_what_is_proven() {
         vec![end(7, NanStage::Responses)],
         vec![end(9, NanStage::Zones)],
     ];
-    let told = several(traces.iter().map(Vec::as_slice), &[]);
+    let told = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(
         told.iter().map(Explanation::statement).collect::<Vec<_>>(),
         [first.statement(), end(1, NanStage::Zones).statement()]

@@ -1,6 +1,6 @@
 //! Programs with several mistakes, asked about on the probe scenes.
 use super::naming::is_in_other_words;
-use super::{About, Explanation, explain, explain_kept, probe_scenes, several};
+use super::{About, Explanation, explain, explain_kept, explain_together, probe_scenes};
 use fosssim_judge::kept::KeptTrace;
 use fosssim_model::assignments::Assignment;
 use fosssim_student::{self as student, Row, Student};
@@ -27,7 +27,7 @@ fn a_mistake_beside_another_is_told_once() {
         let named = list.iter().filter(|one| one.key == rows[0].id).chain(list.iter().filter(twice)).count();
         assert!(named <= 1, "{list:#?}");
     }
-    let told = several(explained.iter().map(Vec::as_slice), &[]);
+    let told = explain_together(explained.iter().map(Vec::as_slice), &[]);
     let mut keys: Vec<&str> = told.iter().map(|one| one.key.as_str()).collect();
     keys.sort_unstable();
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
@@ -52,7 +52,7 @@ fn one_of_many_traces_makes_no_stage_empty() {
         ids.iter().map(of).map(told).collect::<Vec<_>>()
     };
     let keys = |traces: &[Vec<Explanation>]| {
-        several(traces.iter().map(Vec::as_slice), &[]).into_iter().map(|one| one.key).collect::<Vec<_>>()
+        explain_together(traces.iter().map(Vec::as_slice), &[]).into_iter().map(|one| one.key).collect::<Vec<_>>()
     };
     let mut traces = vec![said(&["pp-linear-sign"]); 10];
     traces[3] = said(&["pp-linear-sign", "failsafe-empty"]);
@@ -75,7 +75,7 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     assert!(empty[0].key == "failsafe-empty" && empty[0].denies.contains(&"geometric-empty".to_owned()), "{empty:#?}");
     let partly = said(&[row("geometric-first-zone-only")], "zones-of-all-kinds");
     assert!(partly[0].denies.contains(&"failsafe-empty".to_owned()), "{partly:#?}");
-    let told = several([empty.as_slice(), partly.as_slice()], &[]);
+    let told = explain_together([empty.as_slice(), partly.as_slice()], &[]);
     assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
 }
 

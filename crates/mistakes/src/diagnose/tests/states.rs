@@ -1,7 +1,7 @@
 //! Of states that no known mistake explains, the first thing that is wrong is told.
 use crate::diagnose::{
     About, ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, Quantity, StageDetail, StageFault,
-    WrongChange, WrongDecisions, explain, several,
+    WrongChange, WrongDecisions, explain, explain_together,
 };
 use fosssim_model::{
     scene::{Scene, original},
@@ -73,6 +73,6 @@ fn a_known_mistake_in_one_scene_stands_for_what_others_show() {
     let pulled = original::read(FALL.replace("fx=\"0.1\"", "fx=\"0.7\"").as_bytes()).expect("a scene").scene;
     let seen = explain(&scene, &right(&pulled));
     assert!(seen.len() == 1 && seen[0].is_of_stage(), "{seen:#?}");
-    let heads = several([named.as_slice(), &seen, &seen], &[]);
+    let heads = explain_together([named.as_slice(), &seen, &seen], &[]);
     assert!(heads.len() == 1 && heads[0].key == row.id, "{heads:#?}");
 }

@@ -53,7 +53,7 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::samples::{Numbers, fixed, particle, scene};
+    use crate::sim::samples::{Numbers, fix, particle, scene};
     use fosssim_num::vector::length;
 
     /// Distances within the zone equal those of the start, and the mean displacement stays.
@@ -86,7 +86,7 @@ mod tests {
     #[test]
     fn a_zone_with_a_fixed_particle_or_a_half_plane_stands_still() {
         let scene =
-            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1), fixed(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
+            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1), fix(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
         let bodies = Bodies::new(&scene);
         let start = [0.0, 0.0, 1.0, 0.0];
         for zone in [Zone { particles: &[0, 1], half_plane: false }, Zone { particles: &[0], half_plane: true }] {

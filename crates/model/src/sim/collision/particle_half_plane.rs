@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use crate::sim::{
         collision::response::Law,
-        samples::{fixed, half_plane, particle, scene},
+        samples::{fix, half_plane, particle, scene},
     };
 
     /// The numbers of trace-format.md 3.
@@ -85,7 +85,7 @@ mod tests {
 
     #[test]
     fn even_a_fixed_particle_bounces() {
-        let mut scene = scene(vec![fixed(particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25))]);
+        let mut scene = scene(vec![fix(particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25))]);
         scene.half_planes.push(half_plane((0.0, 0.0), (0.0, 1.0)));
         let bodies = Bodies::new(&scene);
         let (q_start, q_end) = ([0.0, 0.5], [0.0, 0.0]);

@@ -68,7 +68,7 @@ mod tests {
     use super::*;
     use crate::sim::{
         collision::response::Law,
-        samples::{Numbers, fixed, particle, scene},
+        samples::{Numbers, fix, particle, scene},
     };
 
     #[test]
@@ -90,7 +90,7 @@ mod tests {
         let q_start = [0.0, 0.0, 1.0, 0.0];
         let q_end = [0.5, 0.0, 1.0, 0.0];
         let scene =
-            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fixed(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
+            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fix(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
         let bodies = Bodies::new(&scene);
         let setting = Setting { bodies: &bodies, law: &Law::new(0.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [1.0, 0.0, 0.0, 0.0]);

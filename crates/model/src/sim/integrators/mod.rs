@@ -175,7 +175,7 @@ mod tests {
     use super::*;
     use crate::{
         scene::{Force, Particle},
-        sim::samples::{fixed, particle, scene},
+        sim::samples::{fix, particle, scene},
     };
     use fosssim_num::vector::Vec2;
 
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn positions_use_the_old_velocity_and_a_fixed_particle_keeps_moving() {
         let particles =
-            vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fixed(particle((5.0, 0.0), (0.0, 3.0), 1.0, 0.1))];
+            vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fix(particle((5.0, 0.0), (0.0, 3.0), 1.0, 0.1))];
         let state = advanced(Integrator::ExplicitEuler, particles);
         assert_eq!(state.positions, [0.5, 0.0, 5.0, 1.5]);
         assert_eq!(state.velocities, [2.0, 0.0, 0.0, 3.0]);

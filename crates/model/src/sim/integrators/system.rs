@@ -56,13 +56,13 @@ mod tests {
     use super::*;
     use crate::{
         scene::Force,
-        sim::samples::{fixed, particle, scene},
+        sim::samples::{fix, particle, scene},
     };
 
     #[test]
     fn drag_and_mass_stand_on_the_diagonal_and_a_fixed_particle_has_the_identity() {
         let mut scene =
-            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 2.0, 0.1), fixed(particle((1.0, 0.0), (0.0, 0.0), 3.0, 0.1))]);
+            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 2.0, 0.1), fix(particle((1.0, 0.0), (0.0, 0.0), 3.0, 0.1))]);
         scene.forces.push(Force::Drag { coefficient: 0.5 });
         let (bodies, forces) = (Bodies::new(&scene), Forces::new(&scene));
         let mut matrix = DMatrix::zeros(4, 4);

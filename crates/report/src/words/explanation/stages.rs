@@ -49,8 +49,8 @@ fn describe_fault(fault: &StageFault) -> String {
         }
         StageFault::FirstRound => "the polynomials of the first round are right, but not where it leads",
         StageFault::LaterRounds => {
-            "isolated contacts of the first round are resolved as they should be, but the round as a whole does not lead \
-             where it should"
+            "isolated contacts of the first round are resolved as they should be, but the round as a whole does not \
+             lead where it should"
         }
         StageFault::RoundsOfPrediction => {
             "rounds after the first one detect on the predicted positions again, not on those that the round before \

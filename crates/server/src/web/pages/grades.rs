@@ -138,7 +138,7 @@ pub(super) async fn class(
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
-        scenes: scenes::wrong(&standings, &staff.kept_results(&results).await?),
+        scenes: scenes::wrong_scenes(&standings, &staff.kept_results(&results).await?),
         standings,
         suites: suites(&staff, &assignment.settings).await?,
         hides: staff.hides(&assignment).await?,

@@ -7,7 +7,7 @@ const NAMED: usize = 3;
 
 /// Returns the scenes that students have wrong by the results that count, and these students; the most frequent scenes
 /// come first.
-pub(super) fn wrong(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
+pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
         let grade = standing.counts.as_ref().and_then(|counts| counts.grade.as_ref());

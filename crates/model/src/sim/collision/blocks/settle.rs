@@ -66,7 +66,7 @@ impl<'a> LoggedRows<'a> {
             self.room = &mut [];
         }
         self.found = found;
-        *place = PassCursor::after(pair.kind, pair.first as usize, pair.second as usize);
+        *place = PassCursor::following(pair.kind, pair.first as usize, pair.second as usize);
         true
     }
 

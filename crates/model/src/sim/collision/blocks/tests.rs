@@ -3,7 +3,7 @@ use crate::{
     scene::{Collision, Scene},
     sim::{
         Impulse, Observer, PolynomialBytes, RootSearch, Simulation, State, WantedPairs,
-        samples::{Numbers, edge, fixed, half_plane, particle, scene},
+        samples::{Numbers, edge, fix, half_plane, particle, scene},
     },
 };
 
@@ -68,7 +68,7 @@ fn crowd(numbers: &mut Numbers, size: f64, collision: Collision) -> Scene {
     };
     let common = vector(size);
     let particles = kinds.iter().map(|kind| match kind {
-        0 => fixed(particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size)),
+        0 => fix(particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size)),
         1 => particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size),
         2 => particle(vector(size), common, 2.0, 0.2 * size),
         _ => particle(vector(size), vector(size), 1.0, 0.1 * size),

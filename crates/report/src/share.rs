@@ -2,7 +2,7 @@
 
 /// Returns words such as `all 15 steps are right`, `the only step is right`. `count` writes numbers.
 #[must_use]
-pub fn right(steps: u32, count: fn(u64) -> String) -> String {
+pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
     match steps {
         0 => "there is no step to get wrong".to_owned(),
         1 => "the only step is right".to_owned(),
@@ -13,7 +13,7 @@ pub fn right(steps: u32, count: fn(u64) -> String) -> String {
 /// Returns words such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong`, `the only step is wrong`. `count` writes
 /// numbers.
 #[must_use]
-pub fn wrong(wrong: u64, steps: u32, count: fn(u64) -> String) -> String {
+pub fn describe_wrong(wrong: u64, steps: u32, count: fn(u64) -> String) -> String {
     match (wrong, steps) {
         (1, 1) => "the only step is wrong".to_owned(),
         (wrong, steps) => {
@@ -28,10 +28,10 @@ mod tests {
     #[test]
     fn one_step_is_not_many() {
         let count = |number: u64| number.to_string();
-        assert_eq!(super::right(1, count), "the only step is right");
-        assert_eq!(super::right(2, count), "all 2 steps are right");
-        assert_eq!(super::wrong(1, 1, count), "the only step is wrong");
-        assert_eq!(super::wrong(1, 2, count), "1 of 2 steps is wrong");
-        assert_eq!(super::wrong(2, 2, count), "2 of 2 steps are wrong");
+        assert_eq!(super::describe_right(1, count), "the only step is right");
+        assert_eq!(super::describe_right(2, count), "all 2 steps are right");
+        assert_eq!(super::describe_wrong(1, 1, count), "the only step is wrong");
+        assert_eq!(super::describe_wrong(1, 2, count), "1 of 2 steps is wrong");
+        assert_eq!(super::describe_wrong(2, 2, count), "2 of 2 steps are wrong");
     }
 }
