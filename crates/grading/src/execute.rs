@@ -138,6 +138,7 @@ impl Runner<'_> {
         watch.end(RunPart::Explaining);
         result.measured.judging = begin.elapsed().saturating_sub(result.measured.wall);
         if let Some(cards) = self.cards
+            && !kept.bytes().is_empty()
             && !(result.verdict.is_accepted() && result.differs.is_none())
         {
             let judged = JudgedTrace {

@@ -90,7 +90,7 @@ pub fn takes(pattern: &Pattern, name: &str) -> bool {
     match version(folder) {
         Some((of, version)) => {
             let matches = Pattern::new(rest).is_ok_and(|rest| rest.matches(name));
-            assignment(name) == Some(of) && version.has(name) && matches
+            matches && version.has(name) && assignment(name) == Some(of)
         }
         None => pattern.matches(name),
     }

@@ -101,7 +101,7 @@ impl Recipe<'_> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
             // The copy shows why the file can't be read.
-            _ => copy_program(file, path),
+            _ => copy_program(file, path, self.backend),
         }
     }
 
@@ -122,7 +122,7 @@ impl Recipe<'_> {
             return build(&top, step, self.backend, self.cancellation);
         }
         match open_in(&top, self.program) {
-            Ok(file) => copy_program(file, &top.join(self.program)),
+            Ok(file) => copy_program(file, &top.join(self.program), self.backend),
             Err(_) => Ok(StagedProgram::unusable(path, upload::without(self.program, &top))),
         }
     }

@@ -142,8 +142,8 @@ impl StagedProgram {
     }
 }
 
-/// Copies an open program, unless it is the grader itself.
-pub(super) fn copy_program(file: File, path: &Path) -> Result<StagedProgram, String> {
+/// Copies an open program, unless it is the grader itself or can't be started.
+pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = LARGEST_FOLDER;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
@@ -153,7 +153,10 @@ pub(super) fn copy_program(file: File, path: &Path) -> Result<StagedProgram, Str
         Ok(staged)
             if !is_oracle && !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
         {
-            return Ok(staged);
+            match backend.start_problem(&staged.program) {
+                None => return Ok(staged),
+                Some(problem) => UnusableReason::CouldNotStart(problem),
+            }
         }
         Ok(_) => UnusableReason::CouldNotStart(StartProblem::GradersOwn),
         Err(CopyError::Submission(why)) => UnusableReason::Unreadable(why),
@@ -230,7 +233,7 @@ pub(super) fn build(
     match made.regular_file(&step.program, LARGEST_FOLDER) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
-            Ok(StagedProgram { build, ..copy_program(file, &copy.join(&step.program))? })
+            Ok(StagedProgram { build, ..copy_program(file, &copy.join(&step.program), backend)? })
         }
         Err(CollectError::Missing { .. }) => Ok(failed(BuildEnd::MadeNo(step.program.clone()), output)),
         Err(error) => Ok(failed(BuildEnd::Unusable(error.to_string()), output)),
@@ -366,7 +369,7 @@ mod tests {
 
     fn program(path: &Path) -> StagedProgram {
         let (file, _) = collect::open_file(path, true).unwrap();
-        copy_program(file, path).unwrap()
+        copy_program(file, path, &Backend::fake(|_| unreachable!("nothing is run"))).unwrap()
     }
 
     fn why(copied: Result<(), CopyError>) -> String {

@@ -21,7 +21,7 @@ use super::{
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
     laid::{folder_fault, plain_name, write_files},
     layers::{self, Layer, LayerReport},
-    outcome::RunEnd,
+    outcome::{RunEnd, StartProblem},
     own, program, room,
     running::{RunningProgram, SupervisedRun},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
@@ -254,6 +254,15 @@ impl Backend {
     #[must_use]
     pub fn layers(&self) -> &[LayerReport] {
         &self.layers
+    }
+
+    /// Returns why this file can't be started at all, judged by its beginning; `None` if it may be tried.
+    #[must_use]
+    pub fn start_problem(&self, program: &Path) -> Option<StartProblem> {
+        match &self.kind {
+            Kind::Launcher { supervisor, .. } => program::examine(program, &supervisor.own_files()).err(),
+            Kind::Fake(_) => None,
+        }
     }
 
     /// Starts the program. It may have ended by the time that this returns; a program that cannot be started is an

@@ -17,9 +17,11 @@ fn what_can_not_be_run_is_explained() {
     for (program, words) in
         [("text", "not a program"), ("script", "run by /no/such/interpreter"), ("of-windows", "built for Windows")]
     {
-        let run = workspace.run(["grade", program, "--suite", "suite.toml"]);
+        let run = workspace.run(["grade", program, "--suite", "suite.toml", "--output", "of-one", "--fresh"]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
         assert!(run.out().contains("unusable submission") && run.out().contains(words), "{program}: {}", run.shown());
+        let journal = std::fs::read_to_string(workspace.path("of-one/journal.jsonl")).expect("a journal");
+        assert_eq!(journal, "", "{program}: nothing was run");
     }
     for (words, arguments) in [
         ("no submission at missing", vec!["grade", "missing"]),
