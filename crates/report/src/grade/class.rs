@@ -146,11 +146,11 @@ pub(crate) fn never_ran(grade: &Grade) -> bool {
 }
 
 /// Returns the scenes that are not accepted for all, those that fewest have right first, and how many others
-/// there are. A scene that was not run, or on which the grader failed, does not count.
+/// there are. Submissions that never ran do not count, nor do scenes that were not run, or on which the grader failed.
 pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
-    for scene in grades.iter().flat_map(Grade::scenes) {
+    for scene in grades.iter().filter(|grade| !never_ran(grade)).flat_map(Grade::scenes) {
         let share = shares.entry(&scene.scene).or_insert_with(|| {
             order.push(scene.scene.as_str());
             SceneShare::default()
@@ -230,5 +230,6 @@ mod tests {
     fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
         let grades = [samples::fault(), samples::stopped_grade()];
         assert_eq!(hardest(&grades), (Vec::new(), 1));
+        assert_eq!(hardest(&[samples::bad(), samples::unfit()]), hardest(&[samples::bad()]));
     }
 }
