@@ -2,7 +2,7 @@
 //! every report.
 use super::likely_mistakes;
 use crate::words;
-use fosssim_findings::{Grade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, Reason, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::{cmp::Reverse, collections::BTreeMap};
 
@@ -10,7 +10,7 @@ use std::{cmp::Reverse, collections::BTreeMap};
 pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 
 /// Returns the scenes with something to tell, cause by cause: first likely mistakes, then what most scenes have in
-/// common, last accepted scenes about which the rule books differ.
+/// common, then what was left out, last accepted scenes about which the rule books differ.
 #[must_use]
 pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
@@ -22,7 +22,8 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     causes.sort_by_key(|(place, scenes)| {
         let first = scenes[0];
         let is_right = first.verdict.is_accepted();
-        (is_right, rank(&likely, &first.settled), Reverse(scenes.len()), *place)
+        let is_left_out = matches!(first.reason, Reason::LeftOut(_));
+        (is_right, is_left_out, rank(&likely, &first.settled), Reverse(scenes.len()), *place)
     });
     for (_, scenes) in &mut causes {
         let best = (0..scenes.len()).min_by_key(|&place| obscurity(scenes[place])).unwrap_or(0);
@@ -75,4 +76,19 @@ fn cause(scene: &SceneGrade) -> Vec<String> {
     let first = scene.disclosure.as_ref().and_then(|all| all.official().first_divergence.as_ref());
     let kind = first.map(|first| format!("{:?}", first.kind()));
     vec![kind.unwrap_or_else(|| words::summary(scene).replace(|letter: char| letter.is_ascii_digit(), ""))]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::samples, *};
+
+    /// A program that never ends is stopped on some scenes, and is not run on the many that follow.
+    #[test]
+    fn the_first_cause_is_of_scenes_that_were_run() {
+        let grade = samples::endless();
+        let causes = by_cause(&grade);
+        let names: Vec<Vec<&str>> =
+            causes.iter().map(|scenes| scenes.iter().map(|scene| scene.scene.as_str()).collect()).collect();
+        assert_eq!(names, [vec!["Detection/a"], vec!["Detection/b", "Detection/c"]]);
+    }
 }

@@ -4,7 +4,7 @@ use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Hints, Marking, Visibility},
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
-    result::{BuildEnd, Failure, FolderContents, Measurements, RunEnd, UnusableReason, WrongTrace},
+    result::{BuildEnd, Failure, FolderContents, Measurements, NotRunReason, RunEnd, UnusableReason, WrongTrace},
     score,
 };
 use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
@@ -152,6 +152,18 @@ pub(crate) fn stopped_grade() -> Grade {
     let scenes =
         vec![scene("Detection/a", Verdict::Accepted, "all 100 steps are right"), running, missing("Detection/c")];
     grade("kim", vec![group("Detection", Visibility::Visible, scenes)])
+}
+
+/// Returns the grade of a program that was stopped at its limit, and not run on the other scenes.
+pub(crate) fn endless() -> Grade {
+    let mut stopped = scene("Detection/a", Verdict::TimeLimit, "it ran for 5 s");
+    stopped.ended = Some(RunEnd::CpuLimit);
+    let left_out = |name| {
+        let why = NotRunReason::Limits { scenes: 1, verdict: Verdict::TimeLimit };
+        SceneResult::without_run(name, 100, Verdict::TimeLimit, Reason::LeftOut(why))
+    };
+    let scenes = vec![stopped, left_out("Detection/b"), left_out("Detection/c")];
+    grade("eve", vec![group("Detection", Visibility::Visible, scenes)])
 }
 
 fn missing(name: &str) -> SceneResult {
