@@ -12,7 +12,7 @@ use crate::{
     judge::fair::borderline,
     suite::{config, coverage::Coverage, plan},
 };
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 
 pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
@@ -20,6 +20,9 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
         SuiteCommand::Init(SuiteInitArguments { name, output }) => {
             let text = template(name.as_deref())?;
             match output {
+                Some(file) if file.is_file() => {
+                    bail!("{} exists, and may hold your changes; name another file, or remove it", file.display())
+                }
                 Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
                 None => console::print(&text),
             }

@@ -194,4 +194,9 @@ fn whoever_writes_into_a_file_is_told_where() {
         assert!(quiet.err().is_empty() || command[0] == "suite", "{}", quiet.shown());
     }
     assert_eq!(workspace.read("course.toml"), workspace.run(["suite", "init"]).stdout);
+    // A suite that a teacher has changed is not replaced.
+    std::fs::write(workspace.path("course.toml"), "# mine\n").expect("ours");
+    let again = workspace.run(["suite", "init", "-o", "course.toml"]);
+    assert!(again.code == Some(2) && again.err().contains("may hold your changes"), "{}", again.shown());
+    assert_eq!(workspace.read("course.toml"), b"# mine\n");
 }
