@@ -20,7 +20,7 @@ const LARGEST: u64 = 64 << 20;
 pub struct JudgedTrace<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// The scene's name.
+    /// The scene as commands take it.
     pub name: &'a str,
     /// Likely mistakes, with no more than the reader may know.
     pub explanations: &'a [Explanation],

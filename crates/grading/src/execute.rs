@@ -143,7 +143,7 @@ impl Runner<'_> {
         {
             let judged = JudgedTrace {
                 scene: &task.scene,
-                name: &task.name,
+                name: &task.address(),
                 explanations: &result.explanations,
                 outcome: &judged,
                 rulings: &rulings.into_steps(&judged),

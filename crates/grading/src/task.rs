@@ -19,6 +19,12 @@ pub struct SceneTask {
 }
 
 impl SceneTask {
+    /// Returns the scene as commands take it: `asset:Group/name` if it comes with the program.
+    #[must_use]
+    pub fn address(&self) -> String {
+        format!("{}{}", if self.recording.is_some() { "asset:" } else { "" }, self.name)
+    }
+
     /// Returns the task's result where no run was judged.
     #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {

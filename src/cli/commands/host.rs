@@ -79,9 +79,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let pages = Pages::new(None, false)?;
-    let draw = |judged: &JudgedTrace<'_>| {
-        pages::draw(&JudgedTrace { name: &format!("asset:{}", judged.name), ..*judged }, false)
-    };
+    let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, false);
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, pinned) in [("right sample".to_owned(), pin::RIGHT), (format!("sample with mistake {mistake}"), mistake)]
     {

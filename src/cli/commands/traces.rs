@@ -131,7 +131,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     {
         let judged = JudgedTrace {
             scene: &task.scene,
-            name: &task.name,
+            name: &task.address(),
             explanations: &result.explanations,
             outcome: &examined.outcome,
             rulings: &examined.rulings,
