@@ -1,4 +1,6 @@
 // What is said: the moment in words, the pairs, the numbers, the table.
+// Motions that are this close differ by round-off.
+const CLOSE = 1e-9;
 class Words extends Drawing {
   tell() {
     const { data } = this;
@@ -12,12 +14,15 @@ class Words extends Drawing {
         this.show.expected && this.expected()
           ? "from where it should be, given your own state before the step"
           : "from the reference's run";
+      const isWrong = this.classWords().startsWith("wrong");
       const none = this.isExact()
-        ? !this.classWords().startsWith("wrong")
+        ? !isWrong
           ? "Every position is the same to the last bit as expected."
           : "What differs is in the tables: its positions are still the expected ones, to the last bit."
         : "No position differs by more than the rounding of this page.";
-      parts.push(apart.most > 0 ? `The furthest particle is ${short(apart.most)} ${what}.` : none);
+      const furthest = `furthest particle is ${short(apart.most)} ${what}.`;
+      const some = isWrong && apart.most < CLOSE ? `What differs is in the tables: the ${furthest}` : `The ${furthest}`;
+      parts.push(apart.most > 0 ? some : none);
     }
     if (data.whatIf && this.step >= data.first) {
       const own = this.state("submission", this.step),
@@ -26,7 +31,9 @@ class Words extends Drawing {
         parts.push(
           same(own, what)
             ? "The reference with the named mistake is here to the last bit."
-            : "The reference with the named mistake is elsewhere.",
+            : own.every((value, k) => Math.abs(value - what[k]) < CLOSE)
+              ? "The reference with the named mistake is here, but for round-off."
+              : "The reference with the named mistake is elsewhere.",
         );
     }
     this.say.textContent = parts.join(" ");
