@@ -64,9 +64,9 @@ pub(crate) struct Film {
     positions: Vec<f64>,
     steps: u32,
     extent: Extent,
-    /// The painter of the last picture and the step of its next one: particles leave paths, so pictures follow each
-    /// other.
-    painter: Option<(Painter, u32)>,
+    /// The painter of the last picture, the step of its next one, and whether these are named: particles leave paths, so
+    /// pictures follow each other.
+    painter: Option<(Painter, u32, bool)>,
 }
 
 /// Reads a scene and, if it is right, simulates it.
@@ -133,16 +133,20 @@ impl Film {
         &self.positions[step as usize * width..][..width]
     }
 
-    fn painter(&self, size: Size) -> Painter {
-        Painter::new(&self.scene, &self.extent, PictureOptions { size, label: true })
+    fn painter(&self, size: Size, label: bool) -> Painter {
+        Painter::new(&self.scene, &self.extent, PictureOptions { size, label })
     }
 
     /// Returns one picture, as the only part behind the first.
     pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
-        let follows = |(painter, next): &(Painter, u32)| *next <= step && painter.size() == size;
-        let (mut painter, mut next) = self.painter.take().filter(follows).unwrap_or_else(|| (self.painter(size), 0));
+        // The page itself says step and time.
+        let label = !matches!(asked.form, PictureForm::Pixels);
+        let follows =
+            |(painter, next, has): &(Painter, u32, bool)| *next <= step && painter.size() == size && *has == label;
+        let last = self.painter.take().filter(follows);
+        let (mut painter, mut next, _) = last.unwrap_or_else(|| (self.painter(size, label), 0, label));
         if self.scene.display.paths.is_empty() {
             next = step;
         }
@@ -165,7 +169,7 @@ impl Film {
                 packed
             }
         };
-        self.painter = Some((painter, step + 1));
+        self.painter = Some((painter, step + 1, label));
         Ok((json!({ "step": step }), vec![bytes]))
     }
 
@@ -175,7 +179,7 @@ impl Film {
         let rate = Rate::new(RATE).ok_or("no such rate")?;
         let every = self.steps.div_ceil(LONG_FILM).max(1);
         let pictures = self.steps / every + 1;
-        let (mut painter, mut raster, mut bytes) = (self.painter(size), Raster::new(size), Vec::new());
+        let (mut painter, mut raster, mut bytes) = (self.painter(size, true), Raster::new(size), Vec::new());
         let (background, colors) = (painter.background(), painter.colors());
         let mut draw = |take: &mut dyn FnMut(&Raster) -> io::Result<()>| -> io::Result<()> {
             for (number, step) in (0..).zip((0..=self.steps).step_by(every as usize)) {
