@@ -86,6 +86,7 @@ test("people sign in where their organization has them do so", async () => {
   await admin.getByLabel("Login", { exact: true }).fill("ada");
   await admin.getByLabel("Name", { exact: true }).fill("Ada");
   await admin.getByRole("button", { name: "Save" }).click();
+  await admin.getByText("Change ada").click();
   await admin.getByRole("button", { name: "New link for ada" }).waitFor();
 
   // A member comes to the page that they wanted, and needs no link.

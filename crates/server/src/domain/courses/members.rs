@@ -46,26 +46,6 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Returns the people whose login or name has these words, after this login: a page of them, and whether there are
-    /// more.
-    ///
-    /// # Errors
-    /// When the database does not answer.
-    pub async fn members_page(&self, words: &str, after: &str) -> Result<(Vec<MemberInfo>, bool), Problem> {
-        let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT account.login, account.name, member.role FROM member
-            JOIN account ON account.id = member.account
-            WHERE member.course = ? AND login > ? AND ({strpos}(lower(login || ' ' || name), ?) > 0
-               OR {strpos}(name, ?) > 0)
-            ORDER BY login LIMIT ?";
-        let (words, most) = (words.trim(), PEOPLE + 1);
-        let values = values![self.course, after, words.to_lowercase(), words, most];
-        let mut people: Vec<MemberInfo> = transaction.all(statement, values).await?;
-        let has_more = people.len() as i64 == most;
-        people.truncate(PEOPLE as usize);
-        Ok((people, has_more))
-    }
-
     /// Makes a person a member, or changes their role. It creates a missing account, with a link that signs in once.
     /// Only an administrator may add an account that another course's staff made, since that staff can sign in as it.
     ///

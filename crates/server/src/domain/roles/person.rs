@@ -23,6 +23,7 @@ pub struct CourseOf {
 }
 
 /// A person who is signed in.
+#[derive(Clone)]
 pub struct Person {
     pub(crate) account: Account,
     /// The browser's session; `None` for a token.

@@ -4,21 +4,39 @@ use super::{
         api::TokenName,
         input::{AddressParts, Fields},
     },
-    Page, PageFrame, see, show, text,
+    Page, PageFrame,
+    course::{Row, rows},
+    see, show, text,
 };
 use crate::{
-    domain::{CourseOf, Person, TokenInfo},
+    domain::{Course, Member, Person, TokenInfo},
     problem::Problem,
 };
 use askama::Template;
 use axum::response::Redirect;
 
+/// If there are more courses than this, an administrator sees the assignments of their own only.
+const FEW: usize = 5;
+
 #[derive(Template)]
 #[template(path = "home.html")]
 struct Home {
     frame: PageFrame,
-    person: Person,
-    courses: Vec<CourseOf>,
+    name: String,
+    courses: Vec<HomeCourse>,
+    /// Further courses of which an administrator is no member.
+    others: Vec<Course>,
+    /// Whether the server has the page that checks traces.
+    checks_traces: bool,
+}
+
+/// A course of the person.
+struct HomeCourse {
+    member: Member,
+    /// The assignments to which something can be handed in.
+    assignments: Vec<Row>,
+    /// The number of the other assignments.
+    rest: usize,
 }
 
 #[derive(Template)]
@@ -33,7 +51,18 @@ struct AccountPage<'a> {
 
 pub(super) async fn home(person: Person) -> Page {
     let frame = PageFrame::for_account(&person.account);
-    show(&Home { frame, courses: person.courses().await?, person })
+    let (mut courses, mut others) = (Vec::new(), Vec::new());
+    for course in person.courses().await? {
+        if course.role == "admin" && courses.len() >= FEW {
+            others.push(course.course);
+            continue;
+        }
+        let member = person.clone().member_of(&course.course.slug).await?;
+        let (assignments, closed): (Vec<Row>, Vec<Row>) = rows(&member).await?.into_iter().partition(Row::is_open);
+        courses.push(HomeCourse { member, assignments, rest: closed.len() });
+    }
+    let checks_traces = person.app.checker.is_some();
+    show(&Home { frame, name: person.account.name, courses, others, checks_traces })
 }
 
 async fn page(person: &Person, new: Option<String>) -> Page {

@@ -23,11 +23,18 @@ struct CoursePage {
 }
 
 /// An assignment in the table of its course.
-struct Row {
-    assignment: Assignment,
-    work: OwnWork,
+pub(super) struct Row {
+    pub(super) assignment: Assignment,
+    pub(super) work: OwnWork,
     /// The state of the class, for staff.
-    overview: Option<Overview>,
+    pub(super) overview: Option<Overview>,
+}
+
+impl Row {
+    /// Returns whether something can still be handed in.
+    pub(super) fn is_open(&self) -> bool {
+        if self.overview.is_some() { !self.work.is_over } else { self.work.is_open() }
+    }
 }
 
 /// The work of a member in an assignment, and how much they may still do.
@@ -79,6 +86,8 @@ struct MembersPage {
     frame: PageFrame,
     slug: String,
     members: Vec<MemberInfo>,
+    students: usize,
+    staff: usize,
     look: People,
     /// The address of the next page.
     after: Option<String>,
@@ -123,12 +132,18 @@ pub(super) struct MemberRemoval {
     seen: Option<i64>,
 }
 
-pub(super) async fn course(member: Member) -> Page {
-    let mut assignments = Vec::new();
+/// Returns the assignments of a course as its tables show them.
+pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
+    let mut rows = Vec::new();
     for assignment in member.assignments().await? {
-        let (work, overview) = (OwnWork::read(&member, &assignment).await?, member.overview(&assignment).await?);
-        assignments.push(Row { assignment, work, overview });
+        let (work, overview) = (OwnWork::read(member, &assignment).await?, member.overview(&assignment).await?);
+        rows.push(Row { assignment, work, overview });
     }
+    Ok(rows)
+}
+
+pub(super) async fn course(member: Member) -> Page {
+    let assignments = rows(&member).await?;
     let place = format!("/c/{}", member.slug);
     let (frame, kept) = (PageFrame::course(&member).then(place, &member.title), member.describe_kept_bytes().await?);
     show(&CoursePage { frame, member, assignments, kept })
@@ -145,20 +160,32 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
     Ok(see(&format!("/c/{}/a/{slug}/settings", staff.slug)))
 }
 
-/// Which people to show: those whose login or name has these words, behind a login.
+/// Which people to show: those whose login or name has these words, of a role in the course, behind a login.
 #[derive(Default, Deserialize)]
 pub(super) struct People {
     #[serde(default)]
     pub(super) q: String,
     #[serde(default)]
+    role: String,
+    #[serde(default)]
     pub(super) after: String,
 }
 
+/// The number of members on a page.
+const PEOPLE: usize = 200;
+
 impl People {
+    /// Returns whether a member is to be shown.
+    fn wants(&self, member: &MemberInfo) -> bool {
+        let words = self.q.trim().to_lowercase();
+        let has_words = member.login.contains(&words) || member.name.to_lowercase().contains(&words);
+        has_words && (self.role.is_empty() || member.role == self.role) && member.login > self.after
+    }
+
     /// Returns the address of the page after the last of these logins, if there are more.
     pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
         let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
-        Some(query.append_pair("q", &self.q).append_pair("after", last?).finish())
+        Some(query.append_pair("q", &self.q).append_pair("role", &self.role).append_pair("after", last?).finish())
     }
 }
 
@@ -167,9 +194,17 @@ async fn members_page(staff: &Staff, look: People, link: Option<(String, String)
     let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
     // Read before the members: later changes are not seen.
     let seen = staff.last_event().await?;
-    let (members, has_more) = staff.members_page(&look.q, &look.after).await?;
+    let mut members = staff.members().await?;
+    let staff_count = members.iter().filter(|member| member.role == "staff").count();
+    let students = members.len() - staff_count;
+    members.retain(|member| look.wants(member));
+    // A database may have another order.
+    members.sort_by(|one, other| one.login.cmp(&other.login));
+    let has_more = members.len() > PEOPLE;
+    members.truncate(PEOPLE);
     let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
-    show(&MembersPage { frame, slug, members, look, after, platforms: staff.platforms().await?, seen, link })
+    let platforms = staff.platforms().await?;
+    show(&MembersPage { frame, slug, members, students, staff: staff_count, look, after, platforms, seen, link })
 }
 
 pub(super) async fn members(staff: Staff, QueryInput(look): QueryInput<People>) -> Page {
