@@ -158,6 +158,11 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByLabel("Name", { exact: true }).fill("Ada");
   await page.getByRole("button", { name: "Save" }).click();
   const invitation = await page.locator("[role=status] code").innerText();
+  // Members are counted, and shown by their role.
+  await page.getByText("2 students, 0 staff").waitFor();
+  await page.getByLabel("Who").selectOption("staff");
+  await page.getByRole("button", { name: "Show", exact: true }).click();
+  await page.getByText("Nobody is like that.").waitFor();
   await accessible(page);
 
   // A student hands in a program with a mistake, watches its state, and reads what is wrong with it.
@@ -207,14 +212,21 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await plain.page.waitForURL(`${address}/sign-in?to=%2Fc%2Fphysics`);
   await plain.close();
 
+  // The first page has what is open, and its state.
+  await student.page.goto(address);
+  await student.page.getByRole("link", { name: "Hand in: Milestone one" }).waitFor();
+  await accessible(student.page);
+
   // The teacher sees the class, and what a regrade would change before it does.
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByRole("link", { name: "Submission 1 of ada" }).waitFor();
   // What is likely wrong, and in which scenes.
   assert.match(
     await page.getByRole("row", { name: /Submission 1 of ada/ }).innerText(),
-    /0 of \d+ scenes accepted; \S/,
+    /Submission 1 of ada of 1\s+\S/,
   );
+  // The scenes are a row of colors, too.
+  assert.match(await page.locator("td.heat svg").getAttribute("aria-label"), /^0 of \d+ scenes accepted$/);
   await accessible(page);
   // Parts of it can be shown alone, and two submissions beside each other.
   await page.getByLabel("Who").selectOption({ label: "nothing handed in (1)" });
@@ -255,6 +267,10 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
     await accessible(page);
   }
   await fits(page, places);
+  // The log has no codes, and leads to submissions.
+  await page.goto(`${address}/c/physics/audit`);
+  await page.getByText("wrong answer: 0 of 10 points").first().waitFor();
+  await page.getByRole("link", { name: "ada, submission 1" }).first().waitFor();
   // A date is typed in one's own zone, and kept as a moment.
   await page.goto(`${address}/c/physics/a/m1/settings`);
   assert.equal(

@@ -20,7 +20,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
             let about = write_result(transaction, lease.job, lease.attempt, outcome).await?;
             health::note_result(transaction, &about.worker).await?;
         }
-        Completion::Late => note_late(transaction, lease, &format!("a result, {}", outcome.code)).await?,
+        Completion::Late => note_late(transaction, lease, &format!("a result, {}", outcome.verdict)).await?,
         Completion::Repeated => {}
     }
     Ok(completion)
@@ -202,9 +202,9 @@ async fn write_result(
     }
     let text = match (&outcome.points, &outcome.max_points) {
         (Some(points), Some(most)) => {
-            format!("{}: {} of {} points", outcome.code, round_points(points), round_points(most))
+            format!("{}: {} of {} points", outcome.verdict, round_points(points), round_points(most))
         }
-        _ => outcome.code.clone(),
+        _ => outcome.verdict.clone(),
     };
     note(transaction, &about, if about.campaign.is_none() { "graded" } else { "regraded" }, &text).await?;
     Ok(about)

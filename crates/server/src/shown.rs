@@ -11,8 +11,30 @@ use serde_json::Number;
 use std::io;
 use tokio_util::io::{StreamReader, SyncIoBridge};
 
-/// Verdicts in short, from the best to the worst: the worst of the scenes is the grade's.
-const CODES: [&str; 14] = ["AC", "--", "NW", "WA", "BT", "NO", "OLE", "MLE", "TLE", "RTE", "US", "CE", "SV", "JE"];
+/// Verdicts from the best to the worst, in short and in words: the worst of the scenes is the grade's. The letters are
+/// those of scenes in a row.
+const VERDICTS: [(&str, &str, char); 14] = [
+    ("AC", "accepted", 'r'),
+    ("--", "not run", 'n'),
+    ("NW", "nothing written", 'w'),
+    ("WA", "wrong answer", 'w'),
+    ("BT", "bad trace", 'e'),
+    ("NO", "no output", 'e'),
+    ("OLE", "output limit", 'e'),
+    ("MLE", "memory limit", 'e'),
+    ("TLE", "time limit", 'e'),
+    ("RTE", "run-time error", 'e'),
+    ("US", "unusable submission", 'n'),
+    ("CE", "compile error", 'n'),
+    ("SV", "sandbox violation", 'e'),
+    ("JE", "judge error", 'e'),
+];
+
+/// Returns a verdict in words. A grader of another version may have verdicts that are not known here.
+pub fn verdict(code: &str) -> &str {
+    let known = VERDICTS.iter().find(|verdict| verdict.0 == code);
+    known.map_or(if code == "NR" { "not shown yet" } else { code }, |verdict| verdict.1)
+}
 
 /// A grade without the groups that are withheld.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -42,6 +64,9 @@ pub struct GradeParts {
     pub groups: Vec<(String, Option<f64>)>,
     /// Likely mistakes, in sentences.
     pub mistakes: Vec<String>,
+    /// A letter for each scene, with `|` between groups; empty if an older version graded.
+    #[serde(default)]
+    pub scenes: String,
 }
 
 /// Reads the scenes of an outcome.
@@ -78,9 +103,13 @@ fn list_failed(report: &GradeFile) -> String {
 fn parts(report: &GradeFile) -> String {
     let groups = report.grades.iter().flat_map(|grade| &grade.groups);
     let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
+    let known = |scene: &SceneInFile| VERDICTS.iter().find(|verdict| scene.code == verdict.0);
+    let letter = |scene: &SceneInFile| known(scene).map_or('e', |verdict| verdict.2);
+    let rows = groups.clone().map(|group| group.scenes.iter().map(letter).collect::<String>());
     let parts = GradeParts {
         groups: groups.map(|group| (group.name.clone(), group.points)).collect(),
         mistakes: mistakes.map(|mistake| mistake.text.clone()).collect(),
+        scenes: rows.collect::<Vec<_>>().join("|"),
     };
     serde_json::to_string(&parts).unwrap_or_default()
 }
@@ -111,7 +140,8 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     }
     let scenes: Vec<&SceneInFile> = visible.iter().flat_map(|group| &group.scenes).collect();
     // A code that a newer grader has is worse than all that are known here.
-    let rank = |scene: &&SceneInFile| CODES.iter().position(|code| scene.code == *code).unwrap_or(CODES.len());
+    let rank =
+        |scene: &&SceneInFile| VERDICTS.iter().position(|verdict| scene.code == verdict.0).unwrap_or(VERDICTS.len());
     let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
     let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(nothing()) };
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
@@ -179,7 +209,12 @@ mod tests {
     fn codes_are_those_of_the_schema_in_the_order_of_severity() {
         let schema: serde_json::Value =
             serde_json::from_str(include_str!("../../../schemas/grade.schema.json")).expect("JSON");
-        assert_eq!(schema["$defs"]["SceneView"]["properties"]["code"]["enum"], serde_json::json!(CODES));
+        let known = |words: [&str; 14], of: &str| {
+            assert_eq!(schema["$defs"]["SceneView"]["properties"][of]["enum"], serde_json::json!(words));
+        };
+        known(VERDICTS.map(|verdict| verdict.0), "code");
+        known(VERDICTS.map(|verdict| verdict.1), "verdict");
+        assert_eq!([verdict("RTE"), verdict("XX")], ["run-time error", "XX"]);
     }
 
     #[test]
@@ -212,6 +247,6 @@ mod tests {
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
         assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");
-        assert_eq!(parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[]}"#);
+        assert_eq!(parts(&both), r#"{"groups":[["",7.5],["",0.0]],"mistakes":[],"scenes":"rw|e"}"#);
     }
 }

@@ -39,8 +39,9 @@ const HUNDREDS: [(&str, usize); 22] = [
     // Extensions, removals and imports are not overwritten unseen, and uploads wait at a deadline; nothing went
     // instead. Classes have filters and equal programs, submissions a comparison, CSV points of groups, suites names;
     // the text of reports in pages, and the statement for changes between attempts went. Sign-in at a provider is new;
-    // passwords went, with their digests and limits.
-    ("server", 151),
+    // passwords went, with their digests and limits. Verdicts have words everywhere, and the home page and the log have
+    // links; the list of verdicts in a template and the search for members in SQL went.
+    ("server", 152),
     ("shrink", 8),
     // The table of `--timings`.
     // The command `shrink`.

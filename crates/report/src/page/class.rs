@@ -2,7 +2,7 @@
 use super::{
     document,
     graded::key,
-    histogram,
+    heat, histogram,
     markup::{count_scenes, data, note},
     render_template,
     smallest::{parts, pre},
@@ -19,7 +19,7 @@ use crate::{
 use askama::Template;
 use fosssim_findings::{CourseNote, Grade, PassedOver, SceneGrade, Verdict, smallest::SmallestScene};
 use fosssim_mistakes::diagnose::is_named_in;
-use std::{collections::BTreeMap, fmt::Write};
+use std::collections::BTreeMap;
 
 const SCRIPT: &str = include_str!("class.js");
 
@@ -229,38 +229,19 @@ fn state(grade: &Grade) -> &'static str {
     }
 }
 
-/// Returns the scenes of a submission in a row, as paths with their classes: those that are not accepted, each kind in
-/// a color of its own, and the borders of groups.
-fn heat(grade: &Grade) -> Vec<(&'static str, String)> {
-    let of_kind = |kind: &'static str| {
-        let mut path = String::new();
-        let mut place = 0;
-        let is_this: Vec<bool> = grade.scenes().map(|scene| kind_of(scene) == Some(kind)).collect();
-        for row in is_this.chunk_by(|one, other| one == other) {
-            if row[0] {
-                let _ = write!(path, "M{place} .5h{}", row.len());
-            }
-            place += row.len();
-        }
-        (kind, path)
-    };
-    let mut place = 0;
-    let mut borders = String::new();
-    for group in grade.groups.iter().take(grade.groups.len().saturating_sub(1)) {
-        place += group.scenes.len();
-        let _ = write!(borders, "M{place} 0v1");
-    }
-    let paths = ["w", "e", "n"].into_iter().map(of_kind).chain([("g", borders)]);
-    paths.filter(|(_, path)| !path.is_empty()).collect()
+/// Returns the scenes of a submission in a row.
+fn row_of_scenes(grade: &Grade) -> String {
+    let letters = grade.groups.iter().map(|group| group.scenes.iter().map(letter_of).collect::<String>());
+    heat::html(&letters.collect::<Vec<_>>().join("|"))
 }
 
-/// Returns the style of a scene that is not accepted: wrong, without a trace that can be judged, or not run.
-fn kind_of(scene: &SceneGrade) -> Option<&'static str> {
+/// Returns the letter of a scene in its row: accepted, not run, wrong, or without a trace that can be judged.
+fn letter_of(scene: &SceneGrade) -> char {
     match scene.verdict {
-        Verdict::Accepted => None,
-        Verdict::NotRun | Verdict::Unusable | Verdict::CompileError => Some("n"),
-        Verdict::WrongAnswer | Verdict::Unwritten => Some("w"),
-        _ => Some("e"),
+        Verdict::Accepted => 'r',
+        Verdict::NotRun | Verdict::Unusable | Verdict::CompileError => 'n',
+        Verdict::WrongAnswer | Verdict::Unwritten => 'w',
+        _ => 'e',
     }
 }
 

@@ -12,6 +12,7 @@ mod data;
 mod examined;
 mod explained;
 mod graded;
+mod heat;
 mod histogram;
 mod markup;
 mod packed;

@@ -205,11 +205,38 @@ pub struct Event {
     pub kind: String,
     /// The person who did it; `None` for the service.
     pub actor: Option<String>,
+    /// The course, by its name in addresses.
+    pub course: Option<String>,
+    /// The assignment, by its name in addresses.
+    pub assignment: Option<String>,
     /// The submission that it is about.
     pub submission: Option<i64>,
+    /// The number of the submission among those of its owner to the assignment.
+    pub number: Option<i64>,
+    /// The login of the submission's owner.
+    pub owner: Option<String>,
     /// In words.
     pub text: String,
 }
+
+/// Events; the rest of the statement selects them.
+macro_rules! events {
+    ($which:literal) => {
+        concat!(
+            "SELECT event.id, event.happened_at, event.kind, actor.login, event.submission, event.text,
+                course.slug AS course, assignment.slug AS assignment, submission.number, owner.login AS owner FROM event
+             LEFT JOIN account AS actor ON actor.id = event.actor
+             LEFT JOIN course ON course.id = event.course
+             LEFT JOIN assignment ON assignment.id = event.assignment
+             LEFT JOIN submission ON submission.id = event.submission
+             LEFT JOIN account AS owner ON owner.id = submission.account
+             WHERE event.id < ? ",
+            $which,
+            " ORDER BY event.id DESC LIMIT 200"
+        )
+    };
+}
+pub(super) use events;
 
 /// The queue and who works on it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
@@ -256,7 +283,7 @@ from_row! {
     Account { id, login, name, is_admin }
     Course { slug, title }
     Mark { points = "mark_points", comment, by = "marker", marked_at, request, requested_at }
-    Event { id, happened_at, kind, actor = "login", submission, text }
+    Event { id, happened_at, kind, actor = "login", course, assignment, submission, number, owner, text }
     QueueWorker { name, version, slots, running, seen_at, aside_since, faults, fault, fault_at }
 }
 

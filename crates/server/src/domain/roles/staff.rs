@@ -247,10 +247,8 @@ impl Staff {
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = "SELECT event.id, happened_at, kind, account.login, submission, text FROM event
-            LEFT JOIN account ON account.id = event.actor
-            WHERE event.course = ? AND event.id < ? ORDER BY event.id DESC LIMIT 200";
-        Ok(transaction.all(statement, values![self.course, before.unwrap_or(i64::MAX)]).await?)
+        let statement = view::events!("AND event.course = ?");
+        Ok(transaction.all(statement, values![before.unwrap_or(i64::MAX), self.course]).await?)
     }
 
     /// Returns the queue and the workers.

@@ -60,6 +60,8 @@ pub struct Regrade {
 pub struct Change {
     /// The submission.
     pub submission: i64,
+    /// The number of the submission among those of its owner to the assignment.
+    pub number: i64,
     /// The owner's login.
     pub login: String,
     /// The verdict that counts now.
@@ -271,7 +273,7 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     regrade.failed = count(failed.int("n")?);
     regrade.changed = count(transaction.one(changes!("count(*) AS n", ""), values![id]).await?.int("n")?);
     let statement = changes!(
-        "job.submission, account.login, new.code AS new_code, new.points AS new_points,
+        "job.submission, submission.number, account.login, new.code AS new_code, new.points AS new_points,
             new.summary AS new_summary, new.version AS new_version, new.task AS new_task,
             old.code AS old_code, old.points AS old_points, old.summary AS old_summary,
             old.version AS old_version, old.task AS old_task",
@@ -286,7 +288,7 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
 impl FromRow for Change {
     fn from_row(row: &Row) -> Result<Self, DbError> {
         Ok(read_row!(row => Self {
-            submission, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
+            submission, number, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
             why: why(row)?,
         }))
     }

@@ -8,12 +8,17 @@ use super::{
     text,
 };
 use crate::{
-    domain::{Assignment, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing},
+    domain::{Assignment, KeptResult, Regrade, RegradeState, ScoreInfo, ShortStanding, Staff, Standing},
     problem::Problem,
 };
 use askama::Template;
 use axum::response::Redirect;
 use serde::Deserialize;
+use std::collections::BTreeMap;
+
+/// The rows of scenes of the class page that `grade` writes.
+#[path = "../../../../report/src/page/heat.rs"]
+mod heat;
 
 #[derive(Template)]
 #[template(path = "class.html")]
@@ -31,6 +36,8 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
+    /// The kept texts of the results that count, by their numbers.
+    kept: BTreeMap<i64, KeptResult>,
     /// Scenes that students on the page have wrong, and these students.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
@@ -127,6 +134,7 @@ pub(super) async fn class(
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
+    let kept = staff.kept_results(&results).await?;
     show(&GradesPage {
         frame: frame(&staff, &assignment),
         slug,
@@ -138,7 +146,8 @@ pub(super) async fn class(
         scores: staff.scores(&assignment.slug).await?,
         requests: staff.requests(&assignment.slug).await?,
         statistics,
-        scenes: scenes::wrong_scenes(&standings, &staff.kept_results(&results).await?),
+        scenes: scenes::wrong_scenes(&standings, &kept),
+        kept,
         standings,
         suites: suites(&staff, &assignment.settings).await?,
         hides: staff.hides(&assignment).await?,

@@ -1,4 +1,5 @@
 //! Values as people read them.
+pub(super) use crate::shown::verdict;
 use crate::{
     calendar,
     domain::{RegradeState, Submission},
@@ -26,9 +27,17 @@ pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     }
 }
 
-/// Formats points alone.
-pub(super) fn bare_points(points: &Option<String>) -> String {
-    points.as_deref().map(round_points).unwrap_or_default()
+/// Returns the likely mistake in the line about a submission, or why it did not run: its beginning, if it is long.
+pub(super) fn short_mistake(summary: &str) -> String {
+    let mistake = summary.split_once("; ").map_or("", |(_, mistake)| mistake);
+    let beginning: String = mistake.chars().take(110).collect();
+    if beginning.len() < mistake.len() { beginning + "..." } else { beginning }
+}
+
+/// Returns a verdict and its points in words.
+pub(super) fn result(code: &str, points: &Option<String>) -> String {
+    let verdict = verdict(code);
+    points.as_deref().map_or_else(|| verdict.to_owned(), |points| format!("{verdict}, {} points", round_points(points)))
 }
 
 /// Describes the state of a regrade.

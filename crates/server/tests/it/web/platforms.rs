@@ -253,7 +253,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
         "{refused}"
     );
     let page = teacher.post_form("/c/physics/members/roster", "").expect(200).text();
-    assert!(page.contains("<h2>2 leave</h2>") && page.contains("Make it so"), "{page}");
+    assert!(page.contains("<dt>Leave: 2</dt>") && page.contains("Change the members"), "{page}");
     let preview = teacher.post_json("/api/v1/courses/physics/roster?preview=true", "").expect(200).json();
     assert_eq!(preview["goes"].as_array().map(Vec::len), Some(2), "{preview}");
     platform.inside().members = whole;

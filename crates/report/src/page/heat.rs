@@ -1,0 +1,34 @@
+//! The scenes of a submission in a row, as tables of a class show them. The server's pages show these rows, too.
+use std::fmt::Write;
+
+/// Renders a row from the letters of its scenes, group by group with `|` between: accepted, wrong, without a trace that
+/// can be judged, or not run (`r`, `w`, `e`, `n`).
+pub(super) fn html(letters: &str) -> String {
+    let scenes = letters.replace('|', "");
+    let words = format!("{} of {} scenes accepted", scenes.matches('r').count(), scenes.len());
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {} 1\" preserveAspectRatio=\"none\" role=\"img\" aria-label=\"{words}\">",
+        scenes.len().max(1)
+    );
+    for kind in ["w", "e", "n"] {
+        let mut path = String::new();
+        let mut place = 0;
+        for run in scenes.as_bytes().chunk_by(|one, other| one == other) {
+            if run[0] == kind.as_bytes()[0] {
+                let _ = write!(path, "M{place} .5h{}", run.len());
+            }
+            place += run.len();
+        }
+        draw(&mut svg, kind, &path);
+    }
+    let borders = letters.match_indices('|').enumerate().map(|(before, (at, _))| format!("M{} 0v1", at - before));
+    draw(&mut svg, "g", &borders.collect::<String>());
+    svg + "</svg>"
+}
+
+/// Draws the scenes of one kind, or the borders of groups.
+fn draw(svg: &mut String, kind: &str, path: &str) {
+    if !path.is_empty() {
+        let _ = write!(svg, "<path class=\"h-{kind}\" d=\"{path}\"/>");
+    }
+}
