@@ -7,7 +7,7 @@ use super::{
 };
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::{HandComputation, SmallestScene};
-use fosssim_judge::{kept::LONGEST, replay::Options};
+use fosssim_judge::{Stop, kept::LONGEST, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_model::{
     assignments::Assignment,
@@ -75,8 +75,6 @@ pub struct ShrunkScene {
     pub small: SmallScene,
     /// The program's run on it.
     pub seen: Observation,
-    /// The processor time that was spent.
-    pub time: Duration,
 }
 
 /// A program's run on a scene on which it is wrong.
@@ -183,7 +181,7 @@ impl Shrinker<'_> {
             let Some(seen) = seen else { continue };
             // A program that does another thing each time shows nothing.
             if reason.holds(&small.scene, &seen) {
-                return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen, time: time() }));
+                return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen }));
             }
         }
         Ok(None)
@@ -231,7 +229,8 @@ impl Shrinker<'_> {
 fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
-    let ended = FailureKind::from_end(&seen.ended).is_some() || examined.outcome.stop.is_some();
+    let is_unreadable = matches!(examined.outcome.stop, Some(Stop::Trace { .. }));
+    let ended = FailureKind::from_end(&seen.ended).is_some() || is_unreadable;
     let behind = (ended && examined.outcome.steps_judged < scene.steps()).then_some(examined.outcome.steps_judged + 1);
     let wrong = examined.rulings.iter().zip(1..).filter(|(ruling, _)| ruling.wrong_by_fair && !ended);
     behind.into_iter().chain(wrong.map(|(_, step)| step)).collect()

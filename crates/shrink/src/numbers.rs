@@ -31,52 +31,66 @@ impl SceneNumber {
     }
 }
 
-/// Returns all numbers of a scene, in its order. A caller that changes the time step sets the duration, too.
-pub(crate) fn numbers(scene: &mut Scene) -> Vec<(SceneNumber, &mut f64)> {
+/// The powers of length and of time in a unit; those of mass stay as they are.
+type Unit = [i32; 2];
+
+const NUMBER: Unit = [0, 0];
+const LENGTH: Unit = [1, 0];
+const PER_TIME: Unit = [0, -1];
+const PER_TIME_SQUARED: Unit = [0, -2];
+
+/// Returns all numbers of a scene with their units, in its order. A caller that changes the time step sets the
+/// duration, too.
+pub(crate) fn numbers(scene: &mut Scene) -> Vec<(SceneNumber, Unit, &mut f64)> {
     use SceneNumber::{Body, Constant, Direction, Extra, Place, TimeStep, Velocity};
-    let mut all = vec![(TimeStep, &mut scene.time_step)];
+    let mut all = vec![(TimeStep, [0, 1], &mut scene.time_step)];
     match &mut scene.collision {
         Collision::None => {}
         Collision::Simple { restitution } | Collision::ContinuousTime { restitution } => {
-            all.push((Constant, restitution));
+            all.push((Constant, NUMBER, restitution));
         }
-        Collision::Penalty { stiffness, thickness, .. } => all.extend([(Constant, stiffness), (Extra, thickness)]),
+        Collision::Penalty { stiffness, thickness, .. } => {
+            all.extend([(Constant, PER_TIME_SQUARED, stiffness), (Extra, LENGTH, thickness)]);
+        }
         Collision::Hybrid { restitution, stiffness, thickness, .. } => {
             // The penalty force of `hybrid` is an addition.
-            all.extend([(Constant, restitution), (Extra, stiffness), (Extra, thickness)]);
+            all.push((Constant, NUMBER, restitution));
+            all.extend([(Extra, PER_TIME_SQUARED, stiffness), (Extra, LENGTH, thickness)]);
         }
     }
     for particle in &mut scene.particles {
-        all.extend(particle.position.iter_mut().map(|value| (Place, value)));
-        all.extend(particle.velocity.iter_mut().map(|value| (Velocity, value)));
-        all.extend([(Body, &mut particle.mass), (Body, &mut particle.radius)]);
+        all.extend(particle.position.iter_mut().map(|value| (Place, LENGTH, value)));
+        all.extend(particle.velocity.iter_mut().map(|value| (Velocity, [1, -1], value)));
+        all.extend([(Body, NUMBER, &mut particle.mass), (Body, LENGTH, &mut particle.radius)]);
     }
-    all.extend(scene.edges.iter_mut().map(|edge| (Body, &mut edge.radius)));
+    all.extend(scene.edges.iter_mut().map(|edge| (Body, LENGTH, &mut edge.radius)));
     for plane in &mut scene.half_planes {
-        all.extend(plane.point.iter_mut().map(|value| (Place, value)));
-        all.extend(plane.normal.iter_mut().map(|value| (Direction, value)));
+        all.extend(plane.point.iter_mut().map(|value| (Place, LENGTH, value)));
+        all.extend(plane.normal.iter_mut().map(|value| (Direction, NUMBER, value)));
     }
     for force in &mut scene.forces {
         match force {
             Force::Spring { stiffness, rest_length, damping, .. } => {
-                all.extend([(Constant, stiffness), (Extra, rest_length), (Extra, damping)]);
+                all.extend([(Constant, PER_TIME_SQUARED, stiffness), (Extra, LENGTH, rest_length)]);
+                all.push((Extra, PER_TIME, damping));
             }
             Force::SimpleGravity { acceleration: vector } | Force::Constant { force: vector } => {
-                all.extend(vector.iter_mut().map(|value| (Direction, value)));
+                all.extend(vector.iter_mut().map(|value| (Direction, [1, -2], value)));
             }
-            Force::Gravitation { constant: value, .. } | Force::Drag { coefficient: value } => {
-                all.push((Constant, value));
+            Force::Gravitation { constant, .. } => all.push((Constant, [3, -2], constant)),
+            Force::Drag { coefficient } => all.push((Constant, PER_TIME, coefficient)),
+            Force::Vortex { strength, coupling, .. } => {
+                all.extend([(Constant, [1, -1], strength), (Constant, [2, -1], coupling)]);
             }
-            Force::Vortex { strength, coupling, .. } => all.extend([(Constant, strength), (Constant, coupling)]),
         }
     }
     all
 }
 
 /// Returns the scene with each number replaced.
-fn map_numbers(scene: &Scene, mut replace: impl FnMut(SceneNumber, f64) -> f64) -> Scene {
+fn map_numbers(scene: &Scene, mut replace: impl FnMut(SceneNumber, Unit, f64) -> f64) -> Scene {
     let (mut scene, steps) = (scene.clone(), scene.steps());
-    numbers(&mut scene).into_iter().for_each(|(quantity, value)| *value = replace(quantity, *value));
+    numbers(&mut scene).into_iter().for_each(|(quantity, unit, value)| *value = replace(quantity, unit, *value));
     set_steps(&mut scene, steps);
     scene
 }
@@ -99,13 +113,13 @@ pub(crate) fn transformed_scenes(scene: &Scene) -> Vec<Scene> {
     // Bodies that move little in a step leave no room for round numbers.
     let is_velocity = |quantity| quantity == SceneNumber::Velocity;
     let faster = |scene: &Scene, factor: f64| {
-        map_numbers(scene, |quantity, value| if is_velocity(quantity) { factor * value } else { value })
+        map_numbers(scene, |quantity, _, value| if is_velocity(quantity) { factor * value } else { value })
     };
     let hurried: Vec<Scene> = all.iter().flat_map(|one| [2.0, 10.0, 100.0].map(|by| faster(one, by))).collect();
     all.extend(hurried);
     let moved = all.iter().flat_map(|one| origins(one).into_iter().map(|origin| translate(one, origin)));
     let all: Vec<Scene> = moved.collect();
-    let round = |scene: &Scene, decimals| map_numbers(scene, |_, value| round_to(value, decimals));
+    let round = |scene: &Scene, decimals| map_numbers(scene, |_, _, value| round_to(value, decimals));
     (0..=2).flat_map(|decimals| all.iter().map(move |one| round(one, decimals))).collect()
 }
 
@@ -118,7 +132,7 @@ fn origins(scene: &Scene) -> Vec<[f64; 2]> {
 
 fn translate(scene: &Scene, origin: [f64; 2]) -> Scene {
     let mut component = 0;
-    map_numbers(scene, |quantity, value| {
+    map_numbers(scene, |quantity, _, value| {
         if quantity != SceneNumber::Place {
             return value;
         }
@@ -129,19 +143,16 @@ fn translate(scene: &Scene, origin: [f64; 2]) -> Scene {
 
 /// Returns the scene turned by right angles, and mirrored.
 pub(crate) fn turned_scenes(scene: &Scene) -> Vec<Scene> {
+    use SceneNumber::{Direction, Place, Velocity};
     let turn = |[[xx, xy], [yx, yy]]: [[f64; 2]; 2]| {
-        let (mut turned, mut before) = (scene.clone(), scene.clone());
-        let mut vectors: Vec<f64> = Vec::new();
-        let is_vector = |quantity: SceneNumber| {
-            matches!(quantity, SceneNumber::Place | SceneNumber::Velocity | SceneNumber::Direction)
-        };
-        let old = numbers(&mut before).into_iter().filter(|(quantity, _)| is_vector(*quantity));
-        let old: Vec<f64> = old.map(|(_, value)| *value).collect();
-        for vector in old.chunks(2) {
-            vectors.extend([xx * vector[0] + xy * vector[1] + 0.0, yx * vector[0] + yy * vector[1] + 0.0]);
+        let mut turned = scene.clone();
+        let vectors =
+            numbers(&mut turned).into_iter().filter(|(kind, ..)| matches!(kind, Place | Velocity | Direction));
+        let mut components: Vec<&mut f64> = vectors.map(|(.., value)| value).collect();
+        for vector in components.chunks_exact_mut(2) {
+            let (x, y) = (*vector[0], *vector[1]);
+            (*vector[0], *vector[1]) = (xx * x + xy * y + 0.0, yx * x + yy * y + 0.0);
         }
-        let new = numbers(&mut turned).into_iter().filter(|(quantity, _)| is_vector(*quantity));
-        new.zip(vectors).for_each(|((_, value), vector)| *value = vector);
         turned
     };
     let (x, y) = ([1.0, 0.0], [0.0, 1.0]);
@@ -149,53 +160,25 @@ pub(crate) fn turned_scenes(scene: &Scene) -> Vec<Scene> {
     [[y, left], [down, x], [left, down], [left, y], [x, down], [y, x], [down, left]].map(turn).into()
 }
 
-/// Returns the scene with other units of length and of time; masses stay.
+/// Returns the scene with other units of length and of time.
 fn scale(scene: &Scene, length: f64, time: f64) -> Scene {
-    let mut scene = scene.clone();
-    let steps = scene.steps();
-    let pace = 1.0 / (time * time);
-    scene.time_step *= time;
-    match &mut scene.collision {
-        Collision::Penalty { stiffness, thickness, .. } | Collision::Hybrid { stiffness, thickness, .. } => {
-            (*stiffness, *thickness) = (*stiffness * pace, *thickness * length);
-        }
-        _ => {}
-    }
-    for particle in &mut scene.particles {
-        particle.position *= length;
-        particle.velocity *= length / time;
-        particle.radius *= length;
-    }
-    scene.edges.iter_mut().for_each(|edge| edge.radius *= length);
-    scene.half_planes.iter_mut().for_each(|plane| plane.point *= length);
-    for force in &mut scene.forces {
-        match force {
-            Force::Spring { stiffness, rest_length, damping, .. } => {
-                (*stiffness, *rest_length) = (*stiffness * pace, *rest_length * length);
-                *damping /= time;
-            }
-            Force::SimpleGravity { acceleration: vector } | Force::Constant { force: vector } => {
-                *vector *= length * pace;
-            }
-            Force::Gravitation { constant, .. } => *constant *= length * length * length * pace,
-            Force::Drag { coefficient } => *coefficient /= time,
-            Force::Vortex { strength, .. } => *strength *= length * length / time,
-        }
-    }
-    set_steps(&mut scene, steps);
-    scene
+    let power = |base: f64, exponent: i32| {
+        let factor = if exponent < 0 { 1.0 / base } else { base };
+        (0..exponent.abs()).map(|_| factor).product::<f64>()
+    };
+    map_numbers(scene, |_, [of_length, of_time], value| value * power(length, of_length) * power(time, of_time))
 }
 
 /// Returns the scene with rounder numbers for its `index`-th, the roundest first; none after the last one.
 pub(crate) fn rounder(scene: &Scene, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
-    let (quantity, value) = numbers(&mut copy).into_iter().nth(index).map(|(quantity, value)| (quantity, *value))?;
+    let (quantity, value) = numbers(&mut copy).into_iter().nth(index).map(|(quantity, _, value)| (quantity, *value))?;
     let whole = [value.trunc(), value.trunc() + value.signum()];
     let plain = [quantity.plain(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
     let round = (0..=4).map(|decimals| round_to(value, decimals));
     let with = |new: f64| {
         let (mut scene, steps) = (scene.clone(), scene.steps());
-        *numbers(&mut scene).swap_remove(index).1 = new;
+        *numbers(&mut scene).swap_remove(index).2 = new;
         set_steps(&mut scene, steps);
         scene
     };

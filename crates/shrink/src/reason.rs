@@ -1,7 +1,9 @@
 //! The reason why a program is wrong on a scene, and whether it is wrong for the same reason on another.
 use crate::clear::clear_decisions;
 use fosssim_ended::RunEnd;
-use fosssim_findings::{FindingDetail, FindingKind, explanation::Explanation, fair::FairVerdict, located::FailureKind};
+use fosssim_findings::{
+    FindingDetail, FindingKind, Stop, explanation::Explanation, fair::FairVerdict, located::FailureKind,
+};
 use fosssim_judge::replay::{Options, judge};
 use fosssim_mistakes::diagnose::{self, is_named_in, reproduces, shows};
 use fosssim_model::{scene::Scene, sim::PairKind};
@@ -138,7 +140,9 @@ fn findings(scene: &Scene, trace: &[u8]) -> Option<TraceFault> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let outcome = judge(scene, trace, &options, &mut ());
     let fair = outcome.fair.as_ref()?;
-    if outcome.stop.is_some() || outcome.damage.is_some() || outcome.trailing_bytes {
+    // A judgement that takes too much work stops as well, and is no fault of the trace.
+    let is_unreadable = matches!(outcome.stop, Some(Stop::Trace { .. }));
+    if is_unreadable || outcome.damage.is_some() || outcome.trailing_bytes {
         return Some(TraceFault::Broken);
     }
     let first = fair.findings.first_divergence.filter(|_| fair.verdict == FairVerdict::Rejected)?;

@@ -35,7 +35,7 @@ impl SceneSize {
     pub fn from_scene(scene: &Scene) -> Self {
         let mut copy = scene.clone();
         let (mut written, mut magnitude) = (0, 0);
-        for (quantity, value) in numbers(&mut copy) {
+        for (quantity, _, value) in numbers(&mut copy) {
             if *value != quantity.plain() {
                 written += written_digits(*value);
                 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded, and no NaN")]

@@ -16,7 +16,7 @@ fn most_digits(scene: &Scene) -> usize {
         let digits: String = value.abs().to_string().chars().filter(char::is_ascii_digit).collect();
         digits.trim_matches('0').len()
     };
-    numbers::numbers(&mut scene.clone()).into_iter().map(|(_, value)| significant(value)).max().unwrap_or(0)
+    numbers::numbers(&mut scene.clone()).into_iter().map(|(.., value)| significant(value)).max().unwrap_or(0)
 }
 
 /// Shrinks a probe scene on which a program with this mistake is wrong.
