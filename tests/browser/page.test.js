@@ -11,6 +11,7 @@ import {
   readdirSync,
   rmSync,
   statSync,
+  symlinkSync,
   truncateSync,
   writeFileSync,
 } from "node:fs";
@@ -334,6 +335,25 @@ test("everybody can use it: light, dark, a phone's width, without a mouse", asyn
     );
     await close();
   }
+});
+
+test("a report's smallest scenes are tried with one drop", async () => {
+  const { page, complaints, close } = await opened(browser, html);
+  const program = "fosssim-sample.pe-linear-one-sh";
+  symlinkSync(join(programs, "fosssim-sample"), join(folder, program));
+  const run = oracle("shrink", program, "--suite", "t2m2", "--format", "html", "--unsafe-no-sandbox");
+  assert.equal(run.status, 1, run.stderr);
+  writeFileSync(join(folder, "report.html"), run.stdout);
+  await page.locator("#tab-try").click();
+  await page.locator("#open-xml").setInputFiles(join(folder, "report.html"));
+  await page.locator("#try-said", { hasText: "1 step, 3 particles, 1 edge" }).waitFor();
+  assert.match(await page.locator("#source").inputValue(), /^<scene>/);
+  assert.equal(await page.locator("#start option:checked").innerText(), "smallest scene 1");
+  writeFileSync(join(folder, "other.html"), "<p>nothing</p>");
+  await page.locator("#open-xml").setInputFiles(join(folder, "other.html"));
+  await page.locator("#try-said", { hasText: "other.html has no smallest scene" }).waitFor();
+  assert.deepEqual(complaints, []);
+  await close();
 });
 
 test("a folder of traces gets the points of the suite, as grade --traces gives them, and says what became right", async (t) => {

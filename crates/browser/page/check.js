@@ -18,6 +18,7 @@ async function freshFile(item) {
     throw new Error(`cannot read the trace ${file.name}: the gzip data is cut short or damaged; copy it again`);
   }
 }
+const isReport = (file) => /\.html?$/i.test(file?.name ?? "");
 const bare = (name) => name.replace(/\.bin(\.(zst|gz))?$/i, "");
 
 async function takeFiles(items, scene = null) {
@@ -195,6 +196,7 @@ async function dropped(event) {
     file: item.getAsFile(),
     handle: handles[number],
   }));
+  if (isReport(entries[0]?.file)) open("try");
   if (current() === "try") return tryFile(entries[0]?.file);
   const folder = entries.find(({ entry }) => entry?.isDirectory);
   if (folder || entries.some(({ file }) => /\.toml$/i.test(file?.name ?? ""))) {

@@ -22,8 +22,18 @@ function tryScene(words, name) {
   $("source").value = words;
   changed();
 }
+// The smallest scenes of a report become choices.
 async function tryFile(file) {
-  if (file) tryScene(await file.text(), file.name);
+  if (!file) return;
+  const words = await file.text();
+  if (!isReport(file)) return tryScene(words, file.name);
+  const report = new DOMParser().parseFromString(words, "text/html");
+  const scenes = [...report.querySelectorAll('pre[aria-label="The scene"]')].map((pre) => pre.textContent);
+  const options = scenes.map((xml, number) => el("option", { value: xml }, `smallest scene ${number + 1}`));
+  if (!scenes.length) return ($("try-said").textContent = `${file.name} has no smallest scene.`);
+  $("start").append(el("optgroup", { label: file.name }, ...options));
+  $("start").value = scenes[0];
+  tryScene(scenes[0], "small.xml");
 }
 
 // Marks lie behind the text, which is transparent: the same letters at the same places.
@@ -203,6 +213,7 @@ $("open-xml").addEventListener("change", ({ target }) => {
 });
 $("start").addEventListener("change", async ({ target }) => {
   if (!target.value) return tryScene(STARTER, "scene.xml");
+  if (target.value.startsWith("<")) return tryScene(target.value, "small.xml");
   const own = ownScene(target.value);
   if (own) return tryScene(own.xml, own.name);
   const { parts } = await film.oracle.ask({ do: "scene", name: target.value });
