@@ -188,7 +188,8 @@ struct ExactNumber(f64);
 
 impl Display for ExactNumber {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        if self.0.is_finite() { f.write_str(&exact(self.0)) } else { write!(f, "{}", self.0) }
+        // Without the sign of a zero.
+        if self.0.is_finite() { f.write_str(&exact(self.0 + 0.0)) } else { write!(f, "{}", self.0) }
     }
 }
 

@@ -5,7 +5,7 @@ mod collisions;
 mod tests;
 
 use crate::{
-    number::{exact, fraction, general},
+    number::short,
     style::Style,
     table::{Align, Table},
 };
@@ -19,28 +19,39 @@ use fosssim_num::{
     linear,
     vector::{Vec2, at, length},
 };
+use std::collections::BTreeSet;
 
 /// Matrices with more rows are not printed, nor more of Newton's iterations.
 const MOST_ROWS: usize = 8;
 const MOST_ITERATIONS: usize = 3;
-/// Smaller numbers are round-off of a zero, where numbers are near 1.
-const NOTHING: f64 = 1e-13;
 
-/// Renders a scene's first step: forces and integrator where there are forces, then passes and responses, with all of
-/// one pair's detection if one is named. `None` if the step has no result, or nothing to compute.
+/// Renders a scene's first step, which is the `step`-th of a run: forces and integrator where there are forces, then
+/// passes and responses, with all of one pair's detection if one is named. `None` if the step has no result, or nothing
+/// to compute.
 #[must_use]
-pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>) -> Option<String> {
-    let mut walk = CollisionWalk::new(scene, pair);
+pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
+    let mut walk = CollisionWalk::new(scene, pair, step);
     Simulation::new(scene, RootSearch::WhereNeeded).step(&mut walk).ok()?;
-    match (integration(scene), walk.finish()) {
-        (Some(forces), Some(collisions)) => Some(format!("{forces}\n{collisions}")),
-        (None, None) if pair.is_none() => first_step(scene, Some((pairs(scene).iter().next()?, None))),
-        (forces, collisions) => forces.or(collisions),
-    }
+    let text = match (integration(scene, step), walk.finish()) {
+        (Some(forces), Some(collisions)) => format!("{forces}\n{collisions}"),
+        (None, None) if pair.is_none() => return first_step(scene, Some((pairs(scene).iter().next()?, None)), step),
+        (forces, collisions) => forces.or(collisions)?,
+    };
+    let before = (step > 1).then(|| format!("Before step {step}\n{}\n", states(&State::for_scene(scene))));
+    Some(before.unwrap_or_default() + &text)
+}
+
+/// Renders the velocity and the position of each particle.
+fn states(state: &State) -> String {
+    let rows = (0..state.positions.len() / 2).map(|particle| {
+        let [v, x] = [&state.velocities, &state.positions].map(|values| vector(at(values, particle)));
+        [particle.to_string(), v, x]
+    });
+    table(["particle", "v", "x"], rows)
 }
 
 /// Renders the forces at the beginning of a scene, and the integrator's step.
-fn integration(scene: &Scene) -> Option<String> {
+fn integration(scene: &Scene, step: u32) -> Option<String> {
     let has_handling = !matches!(scene.collision, Collision::None | Collision::Penalty { .. });
     let collision = match scene.collision {
         Collision::Hybrid { stiffness, thickness, .. } => {
@@ -55,33 +66,43 @@ fn integration(scene: &Scene) -> Option<String> {
     let is_implicit = scene.integrator.is_implicit();
     let (place, at_which) = if is_implicit { (&predicted, "x + h v") } else { (&x, "x") };
     let all = gradients(scene, place, &v);
-    let has_forces = all.iter().flatten().any(|value| *value != 0.0);
-    if !has_forces && has_handling {
+    let has_any = |values: &[f64]| values.iter().any(|value| *value != 0.0);
+    if has_handling && !all.iter().any(|gradient| has_any(gradient)) {
         return None;
     }
     let (mut systems, mut simulation) =
         (Steering(StepSystems::default()), Simulation::new(scene, RootSearch::WhereNeeded));
     simulation.step(&mut systems).ok()?;
-    let (end, sum, particles) = (simulation.state(), sum(&all), 0..scene.particles.len());
+    let (end, sum, particles) = (simulation.state(), sum(&all, x.len()), 0..scene.particles.len());
     let names = scene.forces.iter().map(force_name).chain(["penalty".to_owned()]);
-    let together = (all.len() > 1).then(|| ("together".to_owned(), &sum));
-    let parts = names.zip(&all).chain(together).flat_map(|(name, gradient)| {
-        let acting = particles.clone().filter(|particle| at(gradient, *particle) != Vec2::zeros());
-        acting.map(move |particle| [name.clone(), particle.to_string(), vector(at(gradient, particle))])
+    let mut parts: Vec<(String, &Vec<f64>)> = names.zip(&all).collect();
+    // A force of the scene is computed even if it comes to nothing.
+    parts.retain(|(name, gradient)| name != "penalty" || has_any(gradient));
+    if parts.len() > 1 {
+        parts.push(("together".to_owned(), &sum));
+    }
+    let rows = parts.iter().flat_map(|(name, gradient)| {
+        let is_acting = |particle: &usize| !has_any(gradient) || has_any(at(gradient, *particle).as_slice());
+        let acting = particles.clone().filter(is_acting);
+        acting.map(|particle| [name.clone(), particle.to_string(), vector(at(gradient, particle))])
     });
     let mut text = format!("Forces at {at_which}\n");
-    text += &if has_forces { table(["", "particle", "gradient"], parts) } else { "  none\n".to_owned() };
+    text += &if parts.is_empty() { "  none\n".to_owned() } else { table(["", "particle", "gradient"], rows) };
+    let formulas: BTreeSet<&str> = scene.forces.iter().map(formula).collect();
+    text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));
     text.extend(penalty(scene, place));
     let words = match scene.integrator {
         Integrator::ExplicitEuler => "x becomes x + h v, v becomes v + h a",
         Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler => "v becomes v + h a, then x becomes x + h v",
-        Integrator::LinearizedImplicitEuler => "A d = b, v becomes v + d, then x becomes x + h v",
+        Integrator::LinearizedImplicitEuler => {
+            "v becomes v + d, then x becomes x + h v, with b = -h gradient, A delta = b, and d = delta"
+        }
         Integrator::ImplicitEuler => {
             "Newton's method for d; v becomes v + d, then x becomes x + h v\n  \
              b = -M d - h gradient at x + h (v + d) and v + d, first with d = 0; A delta = b, and d becomes d + delta"
         }
     };
-    text += &format!("\nStep 1, h = {}: {words}\n", short(h));
+    text += &format!("\nStep {step}, h = {}: {words}\n", short(h));
     let rows = particles.map(|particle| {
         let [v, x] = [&end.velocities, &end.positions].map(|values| vector(at(values, particle)));
         let body = &scene.particles[particle];
@@ -95,12 +116,12 @@ fn integration(scene: &Scene) -> Option<String> {
 /// Renders the systems that an implicit integrator solves, and their solutions.
 fn solves(scene: &Scene, matrices: &[Vec<f64>]) -> String {
     let (State { positions, velocities }, h) = (State::for_scene(scene), scene.time_step);
-    let (size, is_newton) = (positions.len(), scene.integrator == Integrator::ImplicitEuler);
-    let (mut d, mut text, mut before) = (vec![0.0; size], String::new(), &Vec::new());
+    let (size, mut text, mut before) = (positions.len(), String::new(), &Vec::new());
+    let mut d = vec![0.0; size];
     for (matrix, iteration) in matrices.iter().zip(1..=MOST_ITERATIONS) {
         let v: Vec<f64> = velocities.iter().zip(&d).map(|(v, d)| v + d).collect();
         let x: Vec<f64> = positions.iter().zip(&v).map(|(x, v)| x + h * v).collect();
-        let mut b = sum(&gradients(scene, &x, &v));
+        let mut b = sum(&gradients(scene, &x, &v), size);
         for (entry, value) in b.iter_mut().enumerate() {
             let body = &scene.particles[entry / 2];
             *value = if body.fixed { 0.0 } else { -body.mass * d[entry] - h * *value };
@@ -119,13 +140,10 @@ fn solves(scene: &Scene, matrices: &[Vec<f64>]) -> String {
         before = matrix;
         let rows = (0..size / 2).map(|particle| {
             let [b, delta, d] = [&b, &delta, &d].map(|values| vector(at(values, particle)));
-            [particle.to_string(), b, delta, if is_newton { d } else { String::new() }]
+            [particle.to_string(), b, delta, d]
         });
-        text += &if is_newton { format!("  iteration {iteration} of {}\n", matrices.len()) } else { String::new() };
-        text += &table(
-            if is_newton { ["particle", "b", "delta", "d"] } else { ["particle", "b = -h gradient", "d", ""] },
-            rows,
-        );
+        text += &format!("  iteration {iteration} of {}\n", matrices.len());
+        text += &table(["particle", "b", "delta", "d"], rows);
     }
     text
 }
@@ -153,17 +171,18 @@ fn penalty(scene: &Scene, x: &[f64]) -> Option<String> {
         };
         let (reach, force) = (scene.particles[first].radius + other + thickness, length(terms[0].1));
         let [distance, reach, force] = [reach - force / stiffness, reach, -force].map(short);
-        rows.push([PairWords(pair).to_string(), distance, reach, force]);
+        let added = terms.iter().map(|(particle, force)| format!("{particle}: {}", vector(-1.0 * force)));
+        rows.push([PairWords(pair).to_string(), distance, reach, force, added.collect::<Vec<_>>().join(", ")]);
     });
-    let rule =
-        "the last column times -n / |n| is added to the gradient of the first particle, with n from it to the other";
-    let heading = ["penalty", "|n|", "r = radii and thickness", "k (|n| - r)"];
+    let rule = "n is from the first particle to the other object; -k (|n| - r) n / |n| is added for the first, and the \
+                opposite for the other; an edge's ends share it by 1 - alpha and alpha";
+    let heading = ["penalty", "|n|", "r = radii and thickness", "k (|n| - r)", "added"];
     (!rows.is_empty()).then(|| format!("{}  {rule}\n", table(heading, rows)))
 }
 
-/// Adds arrays of equal lengths.
-fn sum(all: &[Vec<f64>]) -> Vec<f64> {
-    let mut sum = vec![0.0; all.first().map_or(0, Vec::len)];
+/// Adds arrays of this length.
+fn sum(all: &[Vec<f64>], length: usize) -> Vec<f64> {
+    let mut sum = vec![0.0; length];
     all.iter().for_each(|one| sum.iter_mut().zip(one).for_each(|(sum, part)| *sum += part));
     sum
 }
@@ -180,23 +199,30 @@ fn force_name(force: &Force) -> String {
     }
 }
 
+/// Returns what a force adds to the gradient.
+const fn formula(force: &Force) -> &'static str {
+    match force {
+        Force::Spring { .. } => {
+            "springforce: -(k (l - l0) + b n.(v_j - v_i)) n for i and the opposite for j, with n = (x_j - x_i) / l"
+        }
+        Force::SimpleGravity { .. } => "simplegravity: -m (fx, fy)",
+        Force::Gravitation { .. } => {
+            "gravitationalforce: -G m_i m_j / r^2 n for i and the opposite for j, with n = (x_j - x_i) / r"
+        }
+        Force::Constant { .. } => "constantforce: -(fx, fy)",
+        Force::Drag { .. } => "dragdamping: b v",
+        Force::Vortex { .. } => {
+            "vortexforce: kvc / r^2 (kbs (-n_y, n_x) - v_j + v_i) for i and the opposite for j, with n = (x_j - x_i) / r"
+        }
+    }
+}
+
 /// Renders rows below a heading.
 fn table<const COLUMNS: usize>(heading: [&str; COLUMNS], rows: impl IntoIterator<Item = [String; COLUMNS]>) -> String {
     let mut table = Table::new([Align::Left; COLUMNS]);
     table.heading(heading);
     rows.into_iter().for_each(|row| table.row(row.map(Into::into)));
     table.render(Style::Plain)
-}
-
-/// Returns a number as it is computed by hand: short decimals or a short fraction, else six digits.
-fn short(value: f64) -> String {
-    // Without the sign of a zero, which nobody computes by hand.
-    let value = if value.abs() < NOTHING { 0.0 } else { value };
-    let rounded = (value * 1e6).round() / 1e6;
-    if (rounded - value).abs() <= NOTHING * value.abs() {
-        return exact(rounded);
-    }
-    fraction(value).unwrap_or_else(|| general(value))
 }
 
 fn vector(value: Vec2) -> String {

@@ -42,6 +42,9 @@ pub struct Place<'a> {
     pub logged: &'a CallLog,
 }
 
+/// The way in which numbers are written: exactly, or as they are computed by hand.
+pub(crate) type ShownNumber = fn(f64) -> String;
+
 /// A detection call to be shown.
 #[derive(Debug, Clone, Copy)]
 pub struct Detect<'a> {
@@ -98,16 +101,26 @@ impl Detect<'_> {
                 }
             };
         }
-        text += &motion(&study.motion, style);
-        text += &format!(
+        text + &motion(&study.motion, exact, style) + &self.computation(exact, style)
+    }
+
+    /// Renders the polynomials, those of the trace, and the decision, with numbers as this function writes them.
+    pub(crate) fn computation(&self, number: ShownNumber, style: Style) -> String {
+        let study = self.study;
+        let mut text = format!(
             "\n{}\n",
             style.paint(Look::Strong, "Polynomials in t, the fraction of the step; each must be positive")
         );
         for curve in &study.curves {
-            text += &polynomial_lines(&curve.role.to_string(), curve, style);
+            text += &polynomial_lines(&curve.role.to_string(), curve, number, style);
         }
         if let Some(right) = &study.right_approach {
-            text += &polynomial_lines("approach without the slip in t^3 of the course's formula", &right.curve, style);
+            text += &polynomial_lines(
+                "approach without the slip in t^3 of the course's formula",
+                &right.curve,
+                number,
+                style,
+            );
         }
         if let Some(place) = self.place.filter(|place| place.trace.is_some() && place.pass.is_some()) {
             text += &format!("\n{}\n", style.paint(Look::Strong, "What the trace logged"));
@@ -118,7 +131,12 @@ impl Detect<'_> {
                         // Their lengths may differ by the coefficients that the course's library drops.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
                             let mark = "right except for a factor and small leading coefficients, which is allowed";
-                            format!("  {}: {}\n    {}\n", curve.role, style.paint(Look::Good, mark), polynomial(own))
+                            format!(
+                                "  {}: {}\n    {}\n",
+                                curve.role,
+                                style.paint(Look::Good, mark),
+                                polynomial(own, exact)
+                            )
                         } else {
                             compare_polynomials(&curve.role.to_string(), expected, own, style)
                         };
@@ -133,16 +151,16 @@ impl Detect<'_> {
             }
         }
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
-        text += &format!("  all positive: {}\n", intervals(&study.answer.positive));
+        text += &format!("  all positive: {}\n", intervals(&study.answer.positive, number));
         let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
-        text += &format!("  {}\n", style.paint(look, &self.decision(time_text)));
+        text += &format!("  {}\n", style.paint(look, &self.decision(|time| time_text(time, number))));
         text += match study.certain {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
             None => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
         if let Some(right) = &study.right_approach {
-            text += &with_right(&study.answer, &right.answer);
+            text += &with_right(&study.answer, &right.answer, number);
         }
         text
     }
@@ -191,7 +209,7 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
         true => (Look::Good, format!("the same except for the factor {}, which is right", exact(factor))),
         false => (Look::Bad, "differs".to_owned()),
     };
-    let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), polynomial(own));
+    let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), polynomial(own, exact));
     if wrong.is_empty() {
         return text;
     }
@@ -212,12 +230,12 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
 }
 
 /// Returns the difference that the right approach polynomial makes.
-fn with_right(course: &Answer, right: &Answer) -> String {
+fn with_right(course: &Answer, right: &Answer, number: ShownNumber) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
-        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", time_text(time)),
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", time_text(time, number)),
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
@@ -225,46 +243,47 @@ fn with_right(course: &Answer, right: &Answer) -> String {
 }
 
 /// Returns the objects and how they move.
-fn motion(motion: &PairMotion, style: Style) -> String {
-    let vector = |x: f64, y: f64| format!("({}, {})", exact(x), exact(y));
+pub(crate) fn motion(motion: &PairMotion, number: ShownNumber, style: Style) -> String {
+    let vector = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
     table.heading(["", "start", "displacement", "radius"]);
     let mut moving = |name: &str, point: PointMotion, radius: Option<f64>| {
         let (start, shift) = (vector(point.start.x, point.start.y), vector(point.shift.x, point.shift.y));
-        let radius = radius.map(exact).unwrap_or_default();
+        let radius = radius.map(number).unwrap_or_default();
         table.row([name.into(), start.into(), shift.into(), Cell::from(radius)]);
     };
     match *motion {
         PairMotion::Particles { centers: [one, two], radii } => {
-            moving("particle 1", one, Some(radii[0]));
-            moving("particle 2", two, Some(radii[1]));
+            moving("x1, first particle", one, Some(radii[0]));
+            moving("x2, second particle", two, Some(radii[1]));
         }
         PairMotion::Edge { center, ends, radii } => {
-            moving("particle", center, Some(radii[0]));
-            moving("edge, first end", ends[0], Some(radii[1]));
-            moving("edge, second end", ends[1], None);
+            moving("x1, particle", center, Some(radii[0]));
+            moving("x2, first end", ends[0], Some(radii[1]));
+            moving("x3, second end", ends[1], None);
         }
         PairMotion::HalfPlane { center, radius, point, normal } => {
-            moving("particle", center, Some(radius));
+            moving("x, particle", center, Some(radius));
             let (point, normal) = (vector(point.x, point.y), vector(normal.x, normal.y));
-            table.row(["half-plane".into(), point.into(), format!("normal {normal}").into(), "".into()]);
+            table.row(["p, half-plane".into(), point.into(), format!("n = {normal}").into(), "".into()]);
         }
     }
     table.render(style)
 }
 
 /// Returns a polynomial with its zeros and where it is positive.
-fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
-    let mut text = format!("  {name}\n    {}\n", polynomial(curve.logged.coefficients()));
+fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style) -> String {
+    let mut text = format!("  {name}\n    {}\n", polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
     if dropped.iter().any(|&coefficient| coefficient != 0.0) {
-        let words = format!("logged without its leading coefficients below 1e-12; with them: {}", polynomial(all));
+        let words =
+            format!("logged without its leading coefficients below 1e-12; with them: {}", polynomial(all, number));
         text += &format!("    {}\n", style.paint(Look::Faint, &words));
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
-    let mut zeros = real.iter().map(|&zero| time_text(zero)).collect::<Vec<_>>().join(", ");
+    let mut zeros = real.iter().map(|&zero| time_text(zero, number)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
@@ -273,31 +292,31 @@ fn polynomial_lines(name: &str, curve: &Curve, style: Style) -> String {
     if complex > 0 {
         zeros += &format!(" ({complex} complex)");
     }
-    text += &format!("    zeros: {zeros}\n    positive: {}\n", intervals(&curve.positive));
+    text += &format!("    zeros: {zeros}\n    positive: {}\n", intervals(&curve.positive, number));
     text
 }
 
 /// Returns a time as a short fraction if it is one: `1/3`.
-fn time_text(time: f64) -> String {
-    fraction(time).unwrap_or_else(|| exact(time))
+fn time_text(time: f64, number: ShownNumber) -> String {
+    fraction(time).unwrap_or_else(|| number(time))
 }
 
 /// Returns `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
-fn intervals(list: &[Interval]) -> String {
+fn intervals(list: &[Interval], number: ShownNumber) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
     let words = |interval: &Interval| match interval {
-        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", time_text(*lo)),
+        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", time_text(*lo, number)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
-        Interval { lo, hi } => format!("({}, {})", time_text(*lo), time_text(*hi)),
+        Interval { lo, hi } => format!("({}, {})", time_text(*lo, number), time_text(*hi, number)),
     };
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
 
 /// Returns `-0.25 t^2 + t - 0.1875`; an empty list of coefficients is the zero polynomial. Only a leading zero, which a
 /// log should not have, is written.
-pub(crate) fn polynomial(coefficients: &[f64]) -> String {
+pub(crate) fn polynomial(coefficients: &[f64], number: ShownNumber) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
     }
@@ -314,8 +333,8 @@ pub(crate) fn polynomial(coefficients: &[f64]) -> String {
             1 => "t".to_owned(),
             power => format!("t^{power}"),
         };
-        let number = if value.abs() == 1.0 && !letter.is_empty() { String::new() } else { exact(value.abs()) };
-        text += &[number, letter].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
+        let factor = if value.abs() == 1.0 && !letter.is_empty() { String::new() } else { number(value.abs()) };
+        text += &[factor, letter].into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(" ");
     }
     text
 }
@@ -478,21 +497,21 @@ mod tests {
 
     #[test]
     fn polynomials_are_written_as_in_books() {
-        assert_eq!(polynomial(&[-0.25, 0.5, -0.1875]), "-0.25 t^2 + 0.5 t - 0.1875");
-        assert_eq!(polynomial(&[1.0, 0.0, -1.0, 0.0]), "t^3 - t");
-        assert_eq!(polynomial(&[-1.0, 1.0]), "-t + 1");
-        assert_eq!(polynomial(&[0.0, 2.0, 0.0]), "0 t^2 + 2 t");
-        assert_eq!(polynomial(&[f64::NAN, -0.0]), "nan t");
-        assert_eq!(polynomial(&[]), "0 (no coefficient)");
+        assert_eq!(polynomial(&[-0.25, 0.5, -0.1875], exact), "-0.25 t^2 + 0.5 t - 0.1875");
+        assert_eq!(polynomial(&[1.0, 0.0, -1.0, 0.0], exact), "t^3 - t");
+        assert_eq!(polynomial(&[-1.0, 1.0], exact), "-t + 1");
+        assert_eq!(polynomial(&[0.0, 2.0, 0.0], exact), "0 t^2 + 2 t");
+        assert_eq!(polynomial(&[f64::NAN, -0.0], exact), "nan t");
+        assert_eq!(polynomial(&[], exact), "0 (no coefficient)");
     }
 
     #[test]
     fn sets_of_times_are_written_as_in_books() {
         let set = |lo, hi| Interval { lo, hi };
-        assert_eq!(intervals(&[]), "nowhere");
-        assert_eq!(intervals(&[Interval::EVERYTHING]), "always");
+        assert_eq!(intervals(&[], exact), "nowhere");
+        assert_eq!(intervals(&[Interval::EVERYTHING], exact), "always");
         assert_eq!(
-            intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)]),
+            intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], exact),
             "(-inf, 0.25) and at 0.5 (intervals touch)"
         );
     }

@@ -3,12 +3,13 @@
 //! They show all that they get; `mistakes::together::told` decides how much that is. Data of a submission appear as
 //! numbers only.
 use super::{
-    number::{exact, format_count},
+    detect::polynomial,
+    number::{decimals, exact, format_count},
     style::Style,
     view::{key, view},
     words::explanation::{details, known_sentence, place, what},
 };
-use fosssim_mistakes::diagnose::{About, Example, ExampleValue, Explanation};
+use fosssim_mistakes::diagnose::{About, Example, ExamplePlace, ExampleValue, Explanation};
 
 /// The greatest number of listed mistakes that can't be distinguished.
 const LISTED: usize = 3;
@@ -117,15 +118,21 @@ fn example_lines(example: &Example, style: Style) -> Vec<String> {
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));
     }
-    lines.push(format!("  expected  {}", list(&example.expected)));
-    lines.push(format!("  actual    {}", list(&example.actual)));
+    let is_polynomial = matches!(
+        example.place,
+        ExamplePlace::Given { .. } | ExamplePlace::Polynomial { .. } | ExamplePlace::NumberedPolynomial(_)
+    );
+    let [expected, actual] = [&example.expected, &example.actual]
+        .map(|values| if is_polynomial { polynomial(values, exact) } else { list(values) });
+    lines.extend([format!("  expected  {expected}"), format!("  actual    {actual}")]);
     lines
 }
 
 fn vector(values: &[f64]) -> String {
+    let number = |value: &f64| decimals(*value).unwrap_or_else(|| exact(*value));
     match values {
-        [value] => exact(*value),
-        values => format!("({})", list(values)),
+        [value] => number(value),
+        values => format!("({})", values.iter().map(number).collect::<Vec<_>>().join(", ")),
     }
 }
 
@@ -183,9 +190,7 @@ pub(crate) mod tests {
     use super::*;
     use fosssim_findings::Hints;
     use fosssim_judge::Role;
-    use fosssim_mistakes::diagnose::{
-        Detail, ExamplePlace, OfPolynomials, PolynomialDetail, Weight, explain, formula_in,
-    };
+    use fosssim_mistakes::diagnose::{Detail, OfPolynomials, PolynomialDetail, Weight, explain, formula_in};
     use fosssim_mistakes::together::told::cut;
     use fosssim_model::{
         scene::original,
@@ -243,10 +248,10 @@ pub(crate) mod tests {
         likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
           Can't be told apart here from 5 other formulas
-          example: step 3, particle 3 and edge 1, pass 0, overlap polynomial
+          example: step 3, particle 3 and edge 1, pass 1, overlap polynomial
             given     x1 = (0.5, -1), re = 0.25
-            expected  1, -0.125
-            actual    1, nan
+            expected  t - 0.125
+            actual    t + nan
         No simple mistake explains the polynomial: particle-edge overlap. (9 checked)
         ");
         assert_eq!(

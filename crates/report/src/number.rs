@@ -18,6 +18,24 @@ pub fn fraction(value: f64) -> Option<String> {
     Some(if has_few_decimals { exact(whole / denominator) } else { format!("{whole}/{denominator}") })
 }
 
+/// Smaller numbers are round-off of a zero, where numbers are near 1.
+const NOTHING: f64 = 1e-13;
+
+/// Returns a number as it is computed by hand: short decimals or a short fraction, else six digits.
+#[must_use]
+pub(crate) fn short(value: f64) -> String {
+    decimals(value).or_else(|| fraction(value)).unwrap_or_else(|| general(value))
+}
+
+/// Returns a number of few decimals without what a few roundings have changed.
+#[must_use]
+pub(crate) fn decimals(value: f64) -> Option<String> {
+    // Without the sign of a zero, which nobody computes by hand.
+    let value = if value.abs() < NOTHING { 0.0 } else { value };
+    let rounded = (value * 1e6).round() / 1e6;
+    ((rounded - value).abs() <= NOTHING * value.abs()).then(|| exact(rounded))
+}
+
 /// Returns a count with thin separation of thousands: `1 234 567`; four digits stay together.
 #[must_use]
 pub fn count(value: u64) -> String {

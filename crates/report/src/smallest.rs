@@ -50,7 +50,7 @@ fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
 fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
     let (scene, program) = (quote(file.unwrap_or("small.xml")), quote(&small.program));
     let detect = small.by_hand.as_ref().and_then(|by_hand| by_hand.detect.as_ref());
-    let detect = detect.map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin --step 1 {pair}"));
+    let detect = detect.map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin {pair}"));
     let check = small.note.is_none().then(|| format!("fosssim-oracle check {scene} small.bin --all"));
     let run = format!("{program} -s {scene} -d 0 -o small.bin");
     std::iter::once(run).chain(check).chain(detect).chain([small.again.clone()]).collect()

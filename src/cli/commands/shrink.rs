@@ -10,7 +10,7 @@ use crate::{
         output::Output,
     },
     diagnose::{About, Explanation, is_named_in},
-    judge::{Rules, replay},
+    judge::{Finding, Rules, replay},
     report::{
         by_hand::first_step,
         case::Case,
@@ -23,8 +23,7 @@ use crate::{
         style::Style,
     },
     scene,
-    shrink::{SmallScene, WrongReason},
-    sim::{Pair, Pass},
+    shrink::{SmallScene, WrongReason, beginnings},
     suite::{
         config::Hints,
         located::FailureKind,
@@ -192,14 +191,17 @@ fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -
         card_for_students: None,
     };
     if drawing.hints == Hints::Full {
-        let (differs, place) = differences(small);
+        let (differs, first) = differences(small);
         told.differs = differs;
-        if scene.steps() == 1 && told.note.is_none() {
+        if let Some(Finding { step, detail, .. }) = first.filter(|_| told.note.is_none()) {
+            let place = detail.pair().map(|pair| (pair, detail.pass()));
             let detect = place.map(|(pair, pass)| {
                 let pass = pass.map_or_else(String::new, |pass| format!(" --pass {}", pass.index + 1));
-                format!("--pair {}{pass}", pair_key(pair))
+                format!("--step {step} --pair {}{pass}", pair_key(pair))
             });
-            told.by_hand = first_step(scene, place).map(|text| HandComputation { detect, text });
+            let alone = beginnings(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.steps() == 1);
+            let text = alone.and_then(|(_, scene)| first_step(&scene, place, step));
+            told.by_hand = text.map(|text| HandComputation { detect, text });
         }
     }
     (told, card)
@@ -222,8 +224,8 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
     case.explanations.splice(0..0, cut(hints, vec![lead]));
 }
 
-/// Returns the values that differ, and the pair of the first finding with its pass.
-fn differences(small: &ShrunkScene) -> (Option<String>, Option<(Pair, Option<Pass>)>) {
+/// Returns the values that differ, and the first finding.
+fn differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
@@ -243,6 +245,5 @@ fn differences(small: &ShrunkScene) -> (Option<String>, Option<(Pair, Option<Pas
         looks_like: None,
     };
     let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
-    let first = findings.and_then(|findings| findings.first_divergence).map(|first| first.detail);
-    (check.steps_text(Style::Plain), first.and_then(|detail| Some((detail.pair()?, detail.pass()))))
+    (check.steps_text(Style::Plain), findings.and_then(|findings| findings.first_divergence))
 }

@@ -1,22 +1,30 @@
 //! The passes of a step by hand, with the impulses and the rigid motions that answer them (collisions.md 3 to 6).
-use super::{short, table, vector};
+use super::{states, table, vector};
 use crate::{
-    detect::{Detect, Overlap},
+    detect::{self, Detect, Overlap},
+    number::short,
     style::Style,
+    words::explanation::explain_letters,
 };
-use fosssim_findings::{PairWords, PassWords};
+use fosssim_findings::{PairWords, PassWords, explanation::Subject};
 use fosssim_judge::{overlap::OverlapStudy, study::Study};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, PairMotion, Pass, Stage, State, Zone},
 };
 use fosssim_num::vector::{Vec2, at, unit};
+use fosssim_student::assignments::t2m2::{
+    Inputs,
+    formulas::{Formula, readings},
+};
 
 /// Writes down a step while it is computed.
 pub(super) struct CollisionWalk<'a> {
     scene: &'a Scene,
     /// The pair whose detection is written in full, once.
     pair: Option<(Pair, Option<Pass>)>,
+    /// The number of the step in a run.
+    step: u32,
     text: String,
     /// The positions at the begin of the step.
     start: Vec<f64>,
@@ -28,9 +36,9 @@ pub(super) struct CollisionWalk<'a> {
 
 impl<'a> CollisionWalk<'a> {
     /// Begins with a scene's first step.
-    pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>) -> Self {
+    pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Self {
         let start = State::for_scene(scene).positions;
-        Self { scene, pair, text: String::new(), start, seen: State::default(), is_telling: false }
+        Self { scene, pair, step, text: String::new(), start, seen: State::default(), is_telling: false }
     }
 
     /// Returns what was written, if it tells anything.
@@ -47,11 +55,14 @@ impl<'a> CollisionWalk<'a> {
         let &Detection { pass, pair, q_start, q_end, .. } = detection;
         if pass.stage == Stage::Simple {
             let study = &OverlapStudy::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
-            let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
-            return Some(report.text(Style::Plain));
+            let report = Overlap { study, scene: "small.xml", trace: None, step: self.step, pair, logged: None };
+            return Some(report.text_with(short, Style::Plain));
         }
-        let study = &Study::for_motion(&PairMotion::between(self.scene, pair, q_start, q_end)).ok()?;
-        Some(format!("{}:\n{}", PairWords(pair), Detect { study, place: None }.text(Style::Plain)))
+        let motion = &PairMotion::between(self.scene, pair, q_start, q_end);
+        let computation =
+            Detect { study: &Study::for_motion(motion).ok()?, place: None }.computation(short, Style::Plain);
+        let moving = detect::motion(motion, short, Style::Plain);
+        Some(format!("{}:\n{moving}\n{}{computation}\n", PairWords(pair), letters(motion)))
     }
 }
 
@@ -153,12 +164,38 @@ impl Observer for CollisionWalk<'_> {
     }
 
     fn end_step(&mut self, _: u32, state: &State) {
-        let rows = (0..self.scene.particles.len()).map(|particle| {
-            let [v, x] = [&state.velocities, &state.positions].map(|values| vector(at(values, particle)));
-            [particle.to_string(), v, x]
-        });
-        self.text += &format!("End of the step\n{}", table(["particle", "v", "x"], rows));
+        self.text += &format!("End of the step\n{}", states(state));
     }
+}
+
+/// Renders the formulas of a pair's polynomials, with the values of their letters. The course supplies the longest one.
+fn letters(motion: &PairMotion) -> String {
+    let (inputs, mut lines) = (Inputs::new(motion), Vec::new());
+    for subject in Subject::all_of_kind(motion.kind()) {
+        let Formula { letters, terms, degree } = &readings(*subject)[0];
+        lines.push(format!("  {}", subject.name()));
+        let sum = |power: usize| {
+            let products = terms.iter().filter(|term| term.power == power).map(|term| {
+                let names: Vec<&str> = term.letters.iter().map(|&letter| letters[letter].name).collect();
+                let sign = if term.weight < 0.0 { "-" } else { "+" };
+                let size = term.weight.abs();
+                let factor = if size == 1.0 { String::new() } else { format!("{size} ") };
+                format!(" {sign} {factor}{}", names.join(" "))
+            });
+            let products: String = products.collect();
+            format!("    t^{power}: {}", products.strip_prefix(" + ").unwrap_or(products.trim_start()))
+        };
+        lines.extend((0..=*degree).rev().filter(|_| *subject != Subject::EdgeApproach).map(sum));
+        let values = letters.iter().map(|letter| {
+            let meaning = if letter.meaning.is_empty() { String::new() } else { format!(" = {}", letter.meaning) };
+            format!("{}{meaning} = {}", letter.name, short((letter.value)(&inputs).value))
+        });
+        let values: Vec<String> = values.collect();
+        let values = values.chunks(5).map(|some| format!("    with {}", some.join(", "))).collect::<Vec<_>>();
+        lines.extend(values.into_iter().filter(|line| !lines.contains(line)).collect::<Vec<_>>());
+    }
+    lines.extend(explain_letters(&lines, &[motion.kind()]).map(|line| format!("  {line}")));
+    format!("Formulas\n{}\n", lines.join("\n"))
 }
 
 /// Returns the parts of a zone: `{0, 1, half-plane}`.

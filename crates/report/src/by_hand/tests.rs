@@ -6,7 +6,7 @@ fn text(integrator: &str, collision: &str, rest: &str) -> String {
         r#"<scene> <duration time="1"/> <integrator type="{integrator}" dt="0.5"/> <collision {collision}/> {rest} </scene>"#
     );
     let scene = fosssim_model::scene::read("small", xml.as_bytes()).expect("a scene").scene;
-    first_step(&scene, None).expect("a result")
+    first_step(&scene, None, 1).expect("a result")
 }
 
 /// Asserts that a text has these lines, with one blank where it has several.
@@ -36,7 +36,7 @@ fn an_explicit_step_has_its_forces_and_result() {
 fn an_implicit_step_has_its_systems() {
     let rest = format!(r#"{PAIR} <dragdamping b="2"/>"#);
     let linearized = text("linearized-implicit-euler", r#"type="none""#, &rest);
-    assert_has(&linearized, &["Forces at x + h v", "3 0 0 0", "0 (-1, 0) (-1/3, 0)", "0 (2/3, 0) (1/3, 0)"]);
+    assert_has(&linearized, &["Forces at x + h v", "3 0 0 0", "0 (-1, 0) (-1/3, 0) (-1/3, 0)", "0 (2/3, 0) (1/3, 0)"]);
     let newton = text("implicit-euler", r#"type="none""#, &rest);
     assert_has(&newton, &["iteration 1 of 2", "0 (-1, 0) (-1/3, 0) (-1/3, 0)", "0 (0, 0) (0, 0) (-1/3, 0)"]);
 }
@@ -52,6 +52,33 @@ fn an_impact_has_its_impulse() {
     assert_has(&found, &["0 (6, 0) 1 1 (-6, 0)", "1 (0, 0) -1 0.5 (3, 0)"]);
     // The simulator's own result.
     assert_has(&found, &["0 (0, 0) (0, 0)", "1 (3, 0) (3.5, 0)"]);
+}
+
+/// Scenes without forces, and forces that come to nothing, have a step, too.
+#[test]
+fn a_step_without_forces_is_computed() {
+    let one = r#"<particle m="1" px="1" py="0" vx="2" vy="0" fixed="0"/>"#;
+    for integrator in ["explicit-euler", "implicit-euler"] {
+        let found = text(integrator, r#"type="none""#, one);
+        assert!(found.contains("  none\n") && found.contains("(2, 0)   (2, 0)"), "{found}");
+    }
+    let still = text("explicit-euler", r#"type="none""#, &format!(r#"{PAIR} <springforce edge="0" k="1" l0="4"/>"#));
+    assert_has(&still, &["springforce on edge 0 0 (0, 0)", "springforce on edge 0 1 (0, 0)"]);
+}
+
+#[test]
+fn a_detection_has_its_formulas_and_letters_and_a_later_step_its_beginning() {
+    let xml = r#"<scene> <duration time="1"/> <integrator type="explicit-euler" dt="1"/>
+        <collision type="continuous-time"/> <particle m="1" px="3" py="0" vx="-0.09" vy="0" fixed="0" radius="1"/>
+        <halfplane px="0" py="0" nx="1" ny="0"/> </scene>"#;
+    let scene = fosssim_model::scene::read("small", xml.as_bytes()).expect("a scene").scene;
+    let pair = Pair { kind: PairKind::ParticleHalfPlane, first: 0, second: 0 };
+    let found = first_step(&scene, Some((pair, None)), 2).expect("a result");
+    assert!(found.starts_with("Before step 2\n"), "{found}");
+    // No round-off of 3 - 0.09 - 3 is in it.
+    assert_has(&found, &["0 (-0.09, 0) (3, 0)", "x, particle (3, 0) (-0.09, 0) 1"]);
+    assert_has(&found, &["t^1: 2 (dx.n) ((p-x).n)", "with (dx.n) = -0.09, ((p-x).n) = -3, (n.n) = 1, r^2 = 1"]);
+    assert_has(&found, &["-0.0081 t^2 + 0.54 t - 8"]);
 }
 
 #[test]
@@ -71,7 +98,7 @@ fn a_penalty_force_has_its_depth() {
     let bodies = r#"<particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="1"/>
         <particle m="1" px="1.5" py="0" vx="0" vy="0" fixed="0" radius="1"/>"#;
     let found = text("explicit-euler", r#"type="penalty" k="2" thickness="0.5""#, bodies);
-    assert_has(&found, &["penalty 0 (2, 0)", "particles 0 and 1 1.5 2.5 -2"]);
+    assert_has(&found, &["penalty 0 (2, 0)", "particles 0 and 1 1.5 2.5 -2 0: (2, 0), 1: (-2, 0)"]);
 }
 
 #[test]

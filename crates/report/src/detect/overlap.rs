@@ -1,5 +1,5 @@
 //! The report on a decision of `simple` handling: overlap, approach, and result.
-use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, motion, title};
+use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, motion, title};
 use crate::{
     number::exact,
     style::{Look, Style},
@@ -31,30 +31,35 @@ impl Overlap<'_> {
     /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
+        self.text_with(exact, style)
+    }
+
+    /// Renders the report with numbers as this function writes them.
+    pub(crate) fn text_with(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
         let heading = |words: &str| format!("\n{}\n", style.paint(Look::Strong, words));
-        let vector = |v: Vec2| format!("({}, {})", exact(v.x), exact(v.y));
+        let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));
         let mut text = style.paint(Look::Strong, &title(self.pair, self.step, self.trace, self.scene)) + "\n";
         text += "  simple collisions: the positions at the end of the step count, and the velocities there\n";
-        text += &motion(&study.motion, style);
+        text += &motion(&study.motion, number, style);
         text += &heading("At the end of the step");
         if let Some(alpha) = study.alpha {
             let along = "the nearest point of the edge, from 0 at its first end to 1 at its second";
-            text += &format!("  alpha {}: {along}\n", exact(alpha));
+            text += &format!("  alpha {}: {along}\n", number(alpha));
         }
         let (overlap, approach) = (self.overlaps(), self.approaches());
         text +=
             &format!("  normal {}: from the first object to the nearest point of the second\n", vector(study.normal));
         text += &format!(
             "  distance {}, radii together {}: they {}overlap\n",
-            exact(study.distance()),
-            exact(study.reach),
+            number(study.distance()),
+            number(study.reach),
             not(overlap)
         );
         let [one, other] = study.velocities.map(vector);
         text += &format!(
             "  velocities {one} and {other}, their difference times the normal {}: they {}approach\n",
-            exact(study.approach()),
+            number(study.approach()),
             not(approach)
         );
         text += &heading("Decision");

@@ -105,7 +105,7 @@ impl ShownStep<'_> {
             let place = label.map_or_else(String::new, |label| {
                 format!("{}, {}: ", PairWords(label.pair), Role::from_number(label.pair.kind, label.number))
             });
-            text += &format!("    {index}  {place}{}\n", polynomial(coefficients));
+            text += &format!("    {index}  {place}{}\n", polynomial(coefficients, exact));
         }
         text
     }

@@ -4,7 +4,7 @@ use fosssim_model::sim::PairKind;
 /// Returns the sentence that explains the short names of differences, of the sum of the radii, and of a zone's motion,
 /// that occur in these lines; `None` if none does. `R` is the sum of the radii in polynomials, and the rotation where
 /// zones move. The kinds are those of the pairs in the lines, if they are known.
-pub(super) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
+pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
     let is_edge = all(PairKind::ParticleEdge)

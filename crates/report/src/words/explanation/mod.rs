@@ -12,6 +12,7 @@ mod stages;
 use fosssim_mistakes::diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, formula_in};
 use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 
+pub(crate) use letters::explain_letters;
 pub(crate) use places::place;
 
 /// Returns the mistake, in one sentence to the student that gives no formula away.

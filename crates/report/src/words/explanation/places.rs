@@ -1,16 +1,16 @@
 //! The places of examples.
 use fosssim_judge::PairWords;
 use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
-use fosssim_model::sim::{Pair, PairKind};
+use fosssim_model::sim::PairKind;
 
 /// Returns the place of an example in its step, and the meaning of its numbers.
 pub(crate) fn place(place: &ExamplePlace) -> String {
     match place {
         ExamplePlace::Given { pair, pass, subject } => {
-            format!("{}, pass {pass}, {} polynomial", PairWords(*pair), subject.name())
+            format!("{}, pass {}, {} polynomial", PairWords(*pair), pass + 1, subject.name())
         }
-        ExamplePlace::Polynomial { pair: Pair { kind, first, second }, pass, role } => {
-            format!("particle {first} and {} {second}, pass {pass}, {role} polynomial", kind.second())
+        ExamplePlace::Polynomial { pair, pass, role } => {
+            format!("{}, pass {}, {role} polynomial", PairWords(*pair), pass + 1)
         }
         ExamplePlace::NumberedPolynomial(number) => format!("polynomial {number}"),
         ExamplePlace::PolynomialCount => "number of polynomials".to_owned(),

@@ -1,5 +1,6 @@
 //! Sentences about stages of a step that no known mistake explains.
 use super::capitalize;
+use crate::number::general;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange,
     WrongGeometric, WrongResponses,
@@ -212,6 +213,9 @@ fn is(ratio: f64, value: f64) -> bool {
 /// Ratios in words: "1.5 times" where they agree, else their range.
 pub(super) fn times(ratios: Ratios) -> String {
     let short = |value: f64| {
+        if value.abs() >= 1e6 {
+            return general(value);
+        }
         let digits = if (value - 1.0).abs() < 5e-5 { 10 } else { 4 };
         let text = format!("{value:.digits$}");
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
