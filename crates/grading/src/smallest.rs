@@ -31,6 +31,9 @@ const MOST_UNNAMED: usize = 2;
 /// The limits where the smallest scenes are only the end of a report.
 pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
 
+/// The time for a cause that has no name, or a quarter of the limit if that is more.
+const UNNAMED: Duration = Duration::from_secs(5);
+
 /// The time on the processor and on the clock of a run.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
@@ -165,7 +168,9 @@ impl Shrinker<'_> {
             };
             let steps = cause.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let begin = beginnings(&task.scene, &seen.trace, &steps);
-            let is_over = || time() >= self.limits.time || self.runner.cancellation.is_cancelled();
+            let all = self.limits.time;
+            let limit = if reason.is_unnamed() { all.min(UNNAMED.max(all / 4)) } else { all };
+            let is_over = || time() >= limit || self.runner.cancellation.is_cancelled();
             // At best the scene alone distinguishes the mistake from all others.
             let search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over);
             let (mut found, mut held) = search(true)?;
@@ -210,8 +215,8 @@ impl Shrinker<'_> {
             }
             Some(holds)
         };
-        let reducer = Reducer::new(reason, self.assignment, &holds).until(is_over);
-        let found = reducer.with_runs(self.limits.runs).reduce(begin);
+        let (assignment, most_runs) = (self.assignment, self.limits.runs);
+        let found = Reducer { reason, assignment, holds: &holds, is_over, most_runs }.reduce(begin);
         fault.into_inner().map_or(Ok((found, held.into_inner())), Err)
     }
 

@@ -25,7 +25,9 @@
 //! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
 //! let holds = |scene: &_| Some(reason.holds(scene, &run(scene)));
 //! let begin = beginnings(&scene, &run(&scene).trace, &[1]);
-//! let found = Reducer::new(&reason, Assignment::T1M1, &holds).reduce(begin).expect("a scene");
+//! let reducer =
+//!     Reducer { reason: &reason, assignment: Assignment::T1M1, holds: &holds, is_over: &|| false, most_runs: 2_000 };
+//! let found = reducer.reduce(begin).expect("a scene");
 //! assert_eq!((found.scene.steps(), found.scene.particles.len()), (1, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -99,6 +99,12 @@ impl WrongReason {
             && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.statement() == mistake.statement())
     }
 
+    /// Returns whether it is a fault that no row of the catalogue makes: each attempt tries them all.
+    #[must_use]
+    pub fn is_unnamed(&self) -> bool {
+        matches!(self, Self::Mistake(mistake) if known_keys(mistake).is_empty())
+    }
+
     /// Returns whether the reference with the named mistake is plainly wrong on a scene; `None` if no mistake of the
     /// catalogue is named.
     pub(crate) fn shows(&self, scene: &Scene) -> Option<bool> {

@@ -36,36 +36,21 @@ pub type Holds<'a> = dyn Fn(&Scene) -> Option<bool> + 'a;
 pub type EndTest<'a> = dyn Fn() -> bool + 'a;
 
 /// Makes scenes smaller on which a program stays wrong for the same reason.
+#[derive(Clone, Copy)]
 pub struct Reducer<'a> {
-    reason: &'a WrongReason,
-    assignment: Assignment,
-    holds: &'a Holds<'a>,
-    is_over: &'a EndTest<'a>,
-    most_runs: u32,
+    /// The reason.
+    pub reason: &'a WrongReason,
+    /// The milestone of the program.
+    pub assignment: Assignment,
+    /// Runs the program for each attempt.
+    pub holds: &'a Holds<'a>,
+    /// Ends the search as soon as this is true, also between two runs.
+    pub is_over: &'a EndTest<'a>,
+    /// The most runs.
+    pub most_runs: u32,
 }
 
-impl<'a> Reducer<'a> {
-    /// The most runs that a search makes, unless another number is set.
-    pub const MOST_RUNS: u32 = 2_000;
-
-    /// Creates a search that calls `holds` for each attempt, of a program of this assignment.
-    #[must_use]
-    pub fn new(reason: &'a WrongReason, assignment: Assignment, holds: &'a Holds<'a>) -> Self {
-        Self { reason, assignment, holds, is_over: &|| false, most_runs: Self::MOST_RUNS }
-    }
-
-    /// Ends the search as soon as this is true, also between two runs.
-    #[must_use]
-    pub fn until(self, is_over: &'a EndTest<'a>) -> Self {
-        Self { is_over, ..self }
-    }
-
-    /// Runs the program at most this often.
-    #[must_use]
-    pub fn with_runs(self, most_runs: u32) -> Self {
-        Self { most_runs, ..self }
-    }
-
+impl Reducer<'_> {
     /// Begins with the first of these steps' scenes on which the program is wrong for the reason, and makes it smaller;
     /// `None` if there is no such scene.
     #[must_use]

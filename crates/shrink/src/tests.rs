@@ -27,7 +27,7 @@ fn smallest(assignment: Assignment, mistake: &str) -> (WrongReason, SmallScene) 
         let Some(reason) = WrongReason::first(&scene, &seen) else { continue };
         let steps: Vec<u32> = (1..=scene.steps()).collect();
         let holds = |scene: &Scene| Some(reason.holds(scene, &run(scene, student)));
-        let reducer = Reducer::new(&reason, assignment, &holds);
+        let reducer = Reducer { reason: &reason, assignment, holds: &holds, is_over: &|| false, most_runs: 2_000 };
         let found = reducer.reduce(beginnings(&scene, &seen.trace, &steps)).expect("a scene");
         return (reason, found);
     }
@@ -71,8 +71,10 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     let reason = WrongReason::first(scene, &run(scene, student)).expect("wrong");
     let holds = |scene: &Scene| Some(reason.holds(scene, &run(scene, student)));
     let begin = beginnings(scene, &run(scene, student).trace, &[1]);
-    let all = Reducer::new(&reason, Assignment::T1M1, &holds).reduce(begin.clone()).expect("a scene");
-    let some = Reducer::new(&reason, Assignment::T1M1, &holds).with_runs(2).reduce(begin).expect("one");
+    let (assignment, most_runs) = (Assignment::T1M1, 2_000);
+    let reducer = Reducer { reason: &reason, assignment, holds: &holds, is_over: &|| false, most_runs };
+    let all = reducer.reduce(begin.clone()).expect("a scene");
+    let some = Reducer { most_runs: 2, ..reducer }.reduce(begin).expect("one");
     assert!(all.is_minimal && !some.is_minimal && some.runs <= 2);
     assert!(SceneSize::from_scene(&all.scene) < SceneSize::from_scene(&some.scene));
     assert!(reason.holds(&some.scene, &run(&some.scene, student)));
