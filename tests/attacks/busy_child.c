@@ -1,4 +1,4 @@
-// promise: The processor time of children counts.
+// promise: The processor time of children counts toward the limit.
 // expect: cpu
 // policy: tools
 #include "attack.h"

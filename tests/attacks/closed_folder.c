@@ -1,4 +1,4 @@
-// promise: A folder that is closed to everybody hides nothing.
+// promise: A folder without permissions hides no files from the grader.
 // expect: exited 0 or folder
 // leaves: honest
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program that blocks and ignores every signal is ended all the same.
+// promise: A program that blocks and ignores every signal is ended, too.
 // expect: wall
 // wall: 300
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Bytes that the kernel copies count.
+// promise: Bytes that the kernel copies count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 #include <sys/sendfile.h>

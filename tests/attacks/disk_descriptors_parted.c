@@ -1,4 +1,4 @@
-// promise: Threads cannot part with common descriptors later.
+// promise: Threads cannot give up their common descriptors later.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

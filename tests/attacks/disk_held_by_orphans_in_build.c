@@ -1,4 +1,4 @@
-// promise: Nameless files of processes whose parents have ended count.
+// promise: Nameless files of processes whose parents have ended count toward the folder's limit.
 // expect: folder
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: The nameless files of every process of a build step count.
+// promise: The nameless files of every process of a build step count toward the folder's limit.
 // expect: folder
 // policy: tools
 #include "attack.h"

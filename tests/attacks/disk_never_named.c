@@ -1,4 +1,4 @@
-// promise: Files that never had a name count.
+// promise: Files that never had a name count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

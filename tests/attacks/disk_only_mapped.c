@@ -1,4 +1,4 @@
-// promise: Files that are neither named nor open, but mapped, count.
+// promise: Files that are neither named nor open, but mapped, count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Files that only a child process of a build step has mapped count.
+// promise: Files that only a child process of a build step has mapped count toward the folder's limit.
 // expect: folder
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Files that are mapped privately count.
+// promise: Files that are mapped privately count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

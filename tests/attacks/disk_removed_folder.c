@@ -1,4 +1,4 @@
-// promise: Files in folders that were removed count as long as they are open.
+// promise: Files in removed folders count toward the folder's limit as long as they are open.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

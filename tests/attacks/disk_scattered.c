@@ -1,4 +1,4 @@
-// promise: Holes of a file do not count, and the blocks between them do.
+// promise: The blocks of a file count toward the folder's limit, and the holes between them do not.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

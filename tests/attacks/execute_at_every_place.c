@@ -1,4 +1,4 @@
-// promise: No place of the path in memory is a way to execute a file.
+// promise: A program cannot execute a file, wherever in memory the path is.
 // expect: violation execve
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: No number of a descriptor is a way to execute a file.
+// promise: A program cannot execute a file by any number of a descriptor.
 // expect: violation execveat
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A program cannot say what becomes of the memory of others, nor compare with theirs.
+// promise: A program cannot advise the kernel on the memory of others, nor compare descriptors with theirs.
 // expect: violation kcmp
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A program cannot ask to be traced.
+// promise: A program cannot request to be traced.
 // expect: violation ptrace
 #include "attack.h"
 #include <sys/ptrace.h>

@@ -1,4 +1,4 @@
-// promise: A build step cannot put up filters of its own.
+// promise: A build step cannot install filters of its own.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A build step that ends its whole group ends itself and nobody else.
+// promise: A build step that ends its whole group ends only itself.
 // expect: signalled 9
 // policy: tools
 #include "attack.h"

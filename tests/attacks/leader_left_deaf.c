@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left and that hears no signal is ended.
+// promise: A program whose main thread has left and that ignores every signal is ended.
 // expect: wall
 // wall: 400
 #include "attack.h"

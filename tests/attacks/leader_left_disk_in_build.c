@@ -1,4 +1,4 @@
-// promise: The nameless files of build processes whose main threads have left count.
+// promise: The nameless files of build processes whose main threads have left count toward the folder's limit.
 // expect: folder
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: The end of a thread wakes no other process by a word in a library's pages.
+// promise: A program cannot wake a process that waits for a word in a library's pages by ending a thread.
 // expect: exited 0
 // needs: named violations
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot ask about, or change, what the kernel holds for everybody.
+// promise: A program cannot read or change what the kernel keeps for all programs.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

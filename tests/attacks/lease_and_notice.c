@@ -1,4 +1,4 @@
-// promise: Leases and notices of folders, which make others wait or tell of them, are refused.
+// promise: A program cannot take leases on files or watch folders, which would delay or observe other programs.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Files cannot carry attributes, which would be memory of the kernel that nobody counts.
+// promise: A program cannot give files attributes, which would take kernel memory without a limit.
 // expect: exited 0
 #include "attack.h"
 #include <sys/xattr.h>

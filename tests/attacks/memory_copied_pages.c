@@ -1,4 +1,4 @@
-// promise: Pages of a library that were written to are memory.
+// promise: Pages of a library that a program has written to count toward the memory limit.
 // expect: memory
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Memory that grows in place is seen.
+// promise: Memory that grows in place counts toward the limit.
 // expect: memory
 #include "attack.h"
 int main(int argc, char **argv) {

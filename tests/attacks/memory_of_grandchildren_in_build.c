@@ -1,4 +1,4 @@
-// promise: The memory of processes whose parents have ended counts in a build step.
+// promise: The memory of processes whose parents have ended counts toward the limit of a build step.
 // expect: memory
 // policy: tools
 #include "attack.h"

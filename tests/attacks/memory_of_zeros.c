@@ -1,4 +1,4 @@
-// promise: Memory behind /dev/zero cannot be held without being seen.
+// promise: Memory behind /dev/zero counts toward the limit.
 // expect: exited 0 or memory
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Memory behind /dev/zero counts in a build step.
+// promise: Memory behind /dev/zero counts toward the limit of a build step.
 // expect: exited 0 or memory
 // policy: tools
 #include "attack.h"

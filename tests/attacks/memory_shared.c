@@ -1,4 +1,4 @@
-// promise: Memory that is shared and in no file, which can be held without being seen, cannot be had.
+// promise: A program cannot have shared memory that is in no file, which no counter shows.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

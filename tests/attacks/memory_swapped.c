@@ -1,4 +1,4 @@
-// promise: Memory that was moved to a disk is memory, and a program cannot move it there.
+// promise: Memory that was moved to a disk counts toward the limit, and a program cannot move it there.
 // expect: memory
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: The stacks of threads are memory.
+// promise: The stacks of threads count toward the memory limit.
 // expect: memory
 #include "attack.h"
 static void *deep(void *nothing) {

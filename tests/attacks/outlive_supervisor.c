@@ -1,4 +1,4 @@
-// promise: A program cannot take back that it dies with its supervisor.
+// promise: A program cannot arrange to outlive its supervisor.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Sockets, mounts and groups of the host are not to be read in /proc.
+// promise: A program cannot read sockets, mounts and groups of the host in /proc.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

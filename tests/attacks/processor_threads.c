@@ -1,4 +1,4 @@
-// promise: Processor time counts for all threads together.
+// promise: The processor time of all threads together is limited.
 // expect: cpu
 #include "attack.h"
 static void *burn(void *nothing) {

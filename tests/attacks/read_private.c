@@ -1,4 +1,4 @@
-// promise: Files that only their owner may read stay unread.
+// promise: Files that only their owner may read cannot be read.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

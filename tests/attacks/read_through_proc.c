@@ -1,4 +1,4 @@
-// promise: The links of /proc lead nowhere that is closed.
+// promise: The links of /proc open no file that is closed otherwise.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot leave the working folder by its parent.
+// promise: A program cannot leave the working folder through the folder above.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: The processor time of children that have ended counts.
+// promise: The processor time of children that have ended counts toward the limit.
 // expect: cpu
 // policy: tools
 #include "attack.h"

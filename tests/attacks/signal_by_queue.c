@@ -1,4 +1,4 @@
-// promise: Signals with a word of their own reach nobody else.
+// promise: A program cannot send signals that carry a value to other programs.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

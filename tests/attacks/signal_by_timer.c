@@ -1,4 +1,4 @@
-// promise: A timer signals nobody else.
+// promise: A program cannot signal others by a timer.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

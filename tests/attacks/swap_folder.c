@@ -1,4 +1,4 @@
-// promise: Swapping folders and links while the grader looks leads it nowhere.
+// promise: A program cannot mislead the grader by swapping folders and links while the grader reads them.
 // expect: wall
 // policy: tools
 // wall: 400

@@ -1,4 +1,4 @@
-// promise: A trace that is moved away is none, and its bytes count for the folder.
+// promise: A trace that was moved away is not collected, and its bytes count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

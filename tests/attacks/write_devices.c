@@ -1,4 +1,4 @@
-// promise: Devices and the kernel's knobs are out of reach.
+// promise: Devices and the kernel's settings are out of reach.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

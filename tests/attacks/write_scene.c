@@ -1,4 +1,4 @@
-// promise: The scene can be read and not rewritten.
+// promise: The scene can be read, but not rewritten.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"
