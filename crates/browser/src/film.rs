@@ -64,8 +64,8 @@ pub(crate) struct Film {
     positions: Vec<f64>,
     steps: u32,
     extent: Extent,
-    /// The painter of the last picture, the step of its next one, and whether these are named: particles leave paths, so
-    /// pictures follow each other.
+    /// The painter, the step of its next picture, and whether pictures are named: particles leave paths, so pictures
+    /// follow each other.
     painter: Option<(Painter, u32, bool)>,
 }
 

@@ -212,7 +212,7 @@ const fn formula(force: &Force) -> &'static str {
         Force::Constant { .. } => "constantforce: -(fx, fy)",
         Force::Drag { .. } => "dragdamping: b v",
         Force::Vortex { .. } => {
-            "vortexforce: kvc / r^2 (kbs (-n_y, n_x) - v_j + v_i) for i and the opposite for j, with n = (x_j - x_i) / r"
+            "vortexforce: kvc / r^2 (kbs (-n_y, n_x) - v_j + v_i) for i, the opposite for j, with n = (x_j - x_i) / r"
         }
     }
 }

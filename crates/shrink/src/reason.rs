@@ -96,7 +96,7 @@ impl WrongReason {
             // Most attempts end here, long before every mistake of the catalogue was tried.
             && (keys.is_empty() || reproduces(scene, &seen.trace, &keys))
             && matches!(findings(scene, &seen.trace), Some(TraceFault::Wrong(first)) if first.is_ordinary)
-            && diagnose::explain(scene, &seen.trace).first().is_some_and(|first| first.statement() == mistake.statement())
+            && diagnose::explain(scene, &seen.trace).first().map(Explanation::statement) == Some(mistake.statement())
     }
 
     /// Returns whether it is a fault that no row of the catalogue makes: each attempt tries them all.
