@@ -3,7 +3,7 @@ use super::{Hints, disclosure::DisclosedFinding, explanation::Explanation};
 use serde::{Deserialize, Serialize};
 
 /// The smallest scene for a cause.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SmallestScene {
     /// The name of the scene that it was made from.
     pub origin: String,
@@ -29,21 +29,14 @@ pub struct SmallestScene {
     pub explanations: Vec<Explanation>,
     /// The values that differ, in words; with full hints only.
     pub differs: Option<String>,
-    /// The reference's computation for the most informative pair, or for the forces; with full hints only.
-    pub by_hand: Option<HandComputation>,
+    /// The reference's computation of the first wrong step; with full hints only.
+    pub by_hand: Option<String>,
+    /// The arguments with which `detect` shows the pair that is wrong; with full hints only.
+    pub detect: Option<String>,
     /// The card that a page shows of it.
     pub card: Option<String>,
     /// The card for students.
     pub card_for_students: Option<String>,
-}
-
-/// The reference's computation for one pair, or for the forces and the integrator.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct HandComputation {
-    /// The arguments with which `detect` shows the pair, if it is about one.
-    pub detect: Option<String>,
-    /// The computation: that of a pair is what `detect` prints.
-    pub text: String,
 }
 
 impl SmallestScene {
@@ -63,7 +56,7 @@ impl SmallestScene {
     /// Cuts it down to what hints allow for students, except for its explanations.
     pub fn cut(&mut self, hints: Hints) {
         if hints < Hints::Full {
-            (self.differs, self.by_hand) = (None, None);
+            (self.differs, self.by_hand, self.detect) = (None, None, None);
             self.first = self.first.take().and_then(|first| hints.cut(first));
             self.card = self.card_for_students.take();
         }

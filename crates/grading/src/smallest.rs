@@ -6,7 +6,7 @@ use super::{
     task::SceneTask,
 };
 use fosssim_evidence::{KeptPart, examine};
-pub use fosssim_findings::smallest::{HandComputation, SmallestScene};
+pub use fosssim_findings::smallest::SmallestScene;
 use fosssim_judge::{Stop, kept::LONGEST, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_model::{
@@ -63,8 +63,6 @@ pub struct WrongScenes<'a> {
     pub reason: Option<WrongReason>,
     /// The scenes.
     pub scenes: Vec<&'a SceneTask>,
-    /// The wrong step with which the search begins; by default the first ones.
-    pub step: Option<u32>,
 }
 
 /// The smallest scene for a cause.
@@ -101,7 +99,7 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
         let scenes: Vec<_> = wrong.iter().filter(|one| is_of(one)).map(|one| one.task).collect();
         left.retain(|one| !is_of(one));
         if !scenes.is_empty() {
-            all.push(WrongScenes { reason, scenes, step: None });
+            all.push(WrongScenes { reason, scenes });
         }
     };
     for one in likely.iter().filter(|one| one.is_vote() || one.is_not_finite()) {
@@ -125,11 +123,7 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
     for end in ends {
         take(Some(WrongReason::Ended(end.clone())), &|wrong| wrong.ended == end);
     }
-    all.extend(left.into_iter().take(MOST_UNNAMED).map(|one| WrongScenes {
-        reason: None,
-        scenes: vec![one.task],
-        step: None,
-    }));
+    all.extend(left.iter().take(MOST_UNNAMED).map(|one| WrongScenes { reason: None, scenes: vec![one.task] }));
     all
 }
 
@@ -143,6 +137,8 @@ pub struct Shrinker<'a> {
     pub assignment: Assignment,
     /// The most that may be spent on one cause.
     pub limits: ShrinkLimits,
+    /// The wrong step with which the search begins; by default the first ones.
+    pub step: Option<u32>,
 }
 
 impl Shrinker<'_> {
@@ -166,7 +162,7 @@ impl Shrinker<'_> {
             let Some(reason) = cause.reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
                 continue;
             };
-            let steps = cause.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
+            let steps = self.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let begin = beginnings(&task.scene, &seen.trace, &steps);
             let all = self.limits.time;
             let limit = if reason.is_unnamed() { all.min(UNNAMED.max(all / 4)) } else { all };

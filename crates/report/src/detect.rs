@@ -5,7 +5,7 @@ mod overlap;
 pub use overlap::Overlap;
 
 use super::{
-    number::{exact, fraction},
+    number::{exact, tidy},
     style::{Look, Style},
     table::{Align, Cell, Table},
     view::{Number, document, numbers, view},
@@ -153,7 +153,7 @@ impl Detect<'_> {
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
         text += &format!("  all positive: {}\n", intervals(&study.answer.positive, number));
         let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
-        text += &format!("  {}\n", style.paint(look, &self.decision(|time| time_text(time, number))));
+        text += &format!("  {}\n", style.paint(look, &self.decision(|time| tidy(time, number))));
         text += match study.certain {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
@@ -235,7 +235,7 @@ fn with_right(course: &Answer, right: &Answer, number: ShownNumber) -> String {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
-        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", time_text(time, number)),
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", tidy(time, number)),
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
@@ -283,7 +283,7 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
-    let mut zeros = real.iter().map(|&zero| time_text(zero, number)).collect::<Vec<_>>().join(", ");
+    let mut zeros = real.iter().map(|&zero| tidy(zero, number)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
@@ -296,20 +296,15 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     text
 }
 
-/// Returns a time as a short fraction if it is one: `1/3`.
-fn time_text(time: f64, number: ShownNumber) -> String {
-    fraction(time).unwrap_or_else(|| number(time))
-}
-
 /// Returns `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
 fn intervals(list: &[Interval], number: ShownNumber) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
     let words = |interval: &Interval| match interval {
-        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", time_text(*lo, number)),
+        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", tidy(*lo, number)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
-        Interval { lo, hi } => format!("({}, {})", time_text(*lo, number), time_text(*hi, number)),
+        Interval { lo, hi } => format!("({}, {})", tidy(*lo, number), tidy(*hi, number)),
     };
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }

@@ -4,7 +4,7 @@
 //! numbers only.
 use super::{
     detect::polynomial,
-    number::{decimals, exact, format_count},
+    number::{exact, format_count, tidy},
     style::Style,
     view::{key, view},
     words::explanation::{details, known_sentence, place, what},
@@ -129,7 +129,7 @@ fn example_lines(example: &Example, style: Style) -> Vec<String> {
 }
 
 fn vector(values: &[f64]) -> String {
-    let number = |value: &f64| decimals(*value).unwrap_or_else(|| exact(*value));
+    let number = |value: &f64| tidy(*value, exact);
     match values {
         [value] => number(value),
         values => format!("({})", values.iter().map(number).collect::<Vec<_>>().join(", ")),

@@ -4,36 +4,30 @@
 
 pub use fosssim_num::printed::{exact, general};
 
-/// Returns a short fraction where a number is one but for a few roundings, and its digits are many: `1/3`, or `0.15`
-/// where that has few decimals.
-#[must_use]
-pub fn fraction(value: f64) -> Option<String> {
+/// Returns a short fraction where a number is one but for a few roundings, and its digits are many: `1/3`.
+fn fraction(value: f64) -> Option<String> {
     let is_near = |denominator: &f64| {
         let (scaled, whole) = (value * denominator, (value * denominator).round());
         (1.0..1000.0).contains(&whole.abs()) && (scaled - whole).abs() <= 4.0 * f64::EPSILON * whole.abs()
     };
     let denominator = (2_u32..60).map(f64::from).find(is_near).filter(|_| value.to_string().len() > 9)?;
-    let whole = (value * denominator).round();
-    let has_few_decimals = 1e6 % denominator == 0.0;
-    Some(if has_few_decimals { exact(whole / denominator) } else { format!("{whole}/{denominator}") })
+    Some(format!("{}/{denominator}", (value * denominator).round()))
 }
 
 /// Smaller numbers are round-off of a zero, where numbers are near 1.
 const NOTHING: f64 = 1e-13;
 
 /// Returns a number as it is computed by hand: short decimals or a short fraction, else six digits.
-#[must_use]
 pub(crate) fn short(value: f64) -> String {
-    decimals(value).or_else(|| fraction(value)).unwrap_or_else(|| general(value))
+    // Without the sign of a zero, which nobody computes by hand.
+    tidy(if value.abs() < NOTHING { 0.0 } else { value }, general)
 }
 
-/// Returns a number of few decimals without what a few roundings have changed.
-#[must_use]
-pub(crate) fn decimals(value: f64) -> Option<String> {
-    // Without the sign of a zero, which nobody computes by hand.
-    let value = if value.abs() < NOTHING { 0.0 } else { value };
+/// Returns short decimals or a short fraction where a number is one but for a few roundings, else as `other` writes it.
+pub(crate) fn tidy(value: f64, other: fn(f64) -> String) -> String {
     let rounded = (value * 1e6).round() / 1e6;
-    ((rounded - value).abs() <= NOTHING * value.abs()).then(|| exact(rounded))
+    let is_near = value.abs() < 1e9 && (rounded - value).abs() <= NOTHING * value.abs();
+    if is_near { exact(rounded) } else { fraction(value).unwrap_or_else(|| other(value)) }
 }
 
 /// Returns a count with thin separation of thousands: `1 234 567`; four digits stay together.
@@ -124,9 +118,8 @@ mod tests {
 
     #[test]
     fn fractions_are_short_and_near() {
-        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(fraction);
-        let texts = texts.each_ref().map(Option::as_deref);
-        assert_eq!(texts, [Some("1/3"), Some("-7/11"), Some("0.3"), None, None]);
+        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| tidy(value, exact));
+        assert_eq!(texts, ["1/3", "-7/11", "0.3", "0.25", "0.3333333"]);
     }
 
     #[test]

@@ -31,7 +31,7 @@ pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
     parts[0].extend(causes(small, style).iter().map(|line| format!("  {line}\n")));
     parts.push(small.xml.clone());
     parts.extend(small.differs.clone());
-    parts.extend(small.by_hand.iter().map(|by_hand| format!("{}{}", heading("By hand"), by_hand.text)));
+    parts.extend(small.by_hand.iter().map(|by_hand| heading("By hand") + by_hand));
     let commands = commands(small, file).into_iter().map(|line| format!("  $ {line}\n"));
     let save = if file.is_none() { "  Save the scene as small.xml (--output writes it).\n" } else { "" };
     parts.push(heading("Next") + save + &commands.collect::<String>());
@@ -49,8 +49,8 @@ fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
 /// Returns commands that run the program on the scene and show more.
 fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
     let (scene, program) = (quote(file.unwrap_or("small.xml")), quote(&small.program));
-    let detect = small.by_hand.as_ref().and_then(|by_hand| by_hand.detect.as_ref());
-    let detect = detect.map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin {pair}"));
+    let detect =
+        small.detect.as_ref().map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin {pair}"));
     let check = small.note.is_none().then(|| format!("fosssim-oracle check {scene} small.bin --all"));
     let run = format!("{program} -s {scene} -d 0 -o small.bin");
     std::iter::once(run).chain(check).chain(detect).chain([small.again.clone()]).collect()
@@ -79,7 +79,7 @@ view! {
         },
         /// Likely mistakes, the cause first.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
-        /// The computation by hand, of the most informative pair or of the forces; null if hints hide it.
-        by_hand: Option<String> = small.by_hand.as_ref().map(|by_hand| by_hand.text.clone()),
+        /// The computation by hand, of the first wrong step; null if hints hide it.
+        by_hand: Option<String> = small.by_hand.clone(),
     }
 }

@@ -93,14 +93,19 @@ struct SceneTraits {
     oddities: usize,
 }
 
+impl SceneTraits {
+    fn new(scene: &Scene, reducer: &Reducer<'_>) -> Self {
+        Self {
+            is_clear: clear_decisions(scene).is_some(),
+            shows: reducer.reason.shows(scene) == Some(true),
+            oddities: oddities(scene, reducer.assignment).unwrap_or(usize::MAX),
+        }
+    }
+}
+
 impl<'a> Search<'a> {
     fn new(reducer: &'a Reducer<'a>, best: Scene, runs: u32) -> Self {
-        let traits = SceneTraits {
-            is_clear: clear_decisions(&best).is_some(),
-            shows: reducer.reason.shows(&best) == Some(true),
-            oddities: oddities(&best, reducer.assignment).unwrap_or(usize::MAX),
-        };
-        let size = SceneSize::from_scene(&best);
+        let (traits, size) = (SceneTraits::new(&best, reducer), SceneSize::from_scene(&best));
         Self { reducer, best, size, traits, refuted: BTreeSet::new(), runs, is_stopped: false }
     }
 
@@ -165,40 +170,29 @@ impl<'a> Search<'a> {
                 continue;
             }
             let may_run = self.runs < self.reducer.most_runs;
-            match may_run.then(|| (self.reducer.holds)(&scene)).flatten() {
-                Some(true) => {
-                    self.runs += 1;
-                    self.accept(scene);
-                    return true;
-                }
-                Some(false) => {
-                    self.runs += 1;
-                    self.refuted.insert(scene::write(&scene));
-                }
-                None => self.is_stopped = true,
+            let Some(holds) = may_run.then(|| (self.reducer.holds)(&scene)).flatten() else {
+                self.is_stopped = true;
+                break;
+            };
+            self.runs += 1;
+            if holds {
+                self.size = SceneSize::from_scene(&scene);
+                self.traits = SceneTraits::new(&scene, self.reducer);
+                self.best = scene;
+                return true;
             }
+            self.refuted.insert(scene::write(&scene));
         }
         false
     }
 
-    fn accept(&mut self, scene: Scene) {
-        self.size = SceneSize::from_scene(&scene);
-        self.traits.is_clear |= clear_decisions(&scene).is_some();
-        self.traits.shows |= self.reducer.reason.shows(&scene) == Some(true);
-        self.traits.oddities = oddities(&scene, self.reducer.assignment).unwrap_or(self.traits.oddities);
-        self.best = scene;
-    }
-
-    /// Returns whether it is worth a run.
+    /// Returns whether a scene is worth a run: smaller, with the properties that smaller ones keep, and not refuted.
     fn fits(&self, scene: &Scene) -> bool {
-        SceneSize::from_scene(scene) < self.size && self.is_like(scene) && !self.refuted.contains(&scene::write(scene))
-    }
-
-    /// Returns whether a scene has the properties that smaller ones keep.
-    fn is_like(&self, scene: &Scene) -> bool {
-        oddities(scene, self.reducer.assignment).is_some_and(|count| count <= self.traits.oddities)
+        SceneSize::from_scene(scene) < self.size
+            && oddities(scene, self.reducer.assignment).is_some_and(|count| count <= self.traits.oddities)
             && (!self.traits.is_clear || clear_decisions(scene).is_some())
             && (!self.traits.shows || self.reducer.reason.shows(scene) != Some(false))
+            && !self.refuted.contains(&scene::write(scene))
     }
 }
 

@@ -27,10 +27,7 @@ use crate::{
     suite::{
         config::Hints,
         located::FailureKind,
-        smallest::{
-            HandComputation, MOST_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes,
-            impatient,
-        },
+        smallest::{MOST_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient},
     },
     together::told::cut,
 };
@@ -121,14 +118,14 @@ pub(super) fn add_smallest(
         program: &program.program,
         assignment: program.assignment,
         limits,
+        step,
     };
     let name = program.program.display().to_string();
     let causes = causes(&diagnosis.common, &wrong);
     let bar = console::Bar::for_runs(causes.len() as u64);
     let mut found: Vec<SmallestScene> = Vec::new();
-    for mut cause in causes {
+    for cause in causes {
         bar.next_run("making scenes smaller");
-        cause.step = step;
         let small = shrinker.smallest(&cause).map_err(anyhow::Error::msg)?;
         let told = small.map(|small| describe(&small, &name, &program.suite, drawing));
         if let Some((small, card)) = told.filter(|(told, _)| told.is_new(&found)) {
@@ -185,23 +182,19 @@ fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -
         note,
         first,
         explanations,
-        differs: None,
-        by_hand: None,
-        card: None,
-        card_for_students: None,
+        ..SmallestScene::default()
     };
     if drawing.hints == Hints::Full {
         let (differs, first) = differences(small);
         told.differs = differs;
         if let Some(Finding { step, detail, .. }) = first.filter(|_| told.note.is_none()) {
             let place = detail.pair().map(|pair| (pair, detail.pass()));
-            let detect = place.map(|(pair, pass)| {
+            told.detect = place.map(|(pair, pass)| {
                 let pass = pass.map_or_else(String::new, |pass| format!(" --pass {}", pass.index + 1));
                 format!("--step {step} --pair {}{pass}", pair_key(pair))
             });
             let alone = beginnings(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.steps() == 1);
-            let text = alone.and_then(|(_, scene)| first_step(&scene, place, step));
-            told.by_hand = text.map(|text| HandComputation { detect, text });
+            told.by_hand = alone.and_then(|(_, scene)| first_step(&scene, place, step));
         }
     }
     (told, card)

@@ -33,8 +33,8 @@ const HUNDREDS: [(&str, usize); 22] = [
     // The class page has filters; the second figures, the second list of mistakes and the table of the rest went.
     // Smallest scenes in all reports; their own type went. Formulas have Unicode's signs; nothing went instead. Pages
     // are templates. The step by hand; the templates of pages took 400 lines before. Impulses, rigid motions, systems
-    // and penalty by hand; drawn scenes and the second thread of `shrink`, and a shell quoter went. Formulas and letters
-    // by hand; tables of units in `shrink` went.
+    // and penalty by hand; drawn scenes and the second thread of `shrink`, and a shell quoter went. Formulas and
+    // letters by hand; tables of units in `shrink` went.
     ("report", 78),
     ("sandbox", 56),
     // Extensions, removals and imports are not overwritten unseen, and uploads wait at a deadline; nothing went

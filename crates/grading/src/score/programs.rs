@@ -102,6 +102,7 @@ impl SubmissionGrading<'_> {
             program: &staged.program,
             assignment: plan.assignment(),
             limits: QUICK,
+            step: None,
         };
         let mut found: Vec<SmallestScene> = Vec::new();
         for mut cause in causes(&likely, &wrong).into_iter().take(MOST_CAUSES) {

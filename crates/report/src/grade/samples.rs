@@ -219,12 +219,7 @@ pub(crate) fn smallest(explanations: Vec<Explanation>) -> SmallestScene {
         again: "fosssim-oracle shrink ./FOSSSim Holistic/first --step 1 --suite t2m2".to_owned(),
         runs: 7,
         is_minimal: true,
-        note: None,
-        first: None,
         explanations,
-        differs: None,
-        by_hand: None,
-        card: None,
-        card_for_students: None,
+        ..SmallestScene::default()
     }
 }

@@ -25,8 +25,7 @@ struct SmallestContent<'a> {
 
 /// Returns what is written as for a terminal, each with its name: the scene first.
 pub(super) fn parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
-    let by_hand = small.by_hand.as_ref().map(|by_hand| by_hand.text.as_str());
-    let parts = [Some(small.xml.as_str()), small.differs.as_deref(), by_hand];
+    let parts = [Some(small.xml.as_str()), small.differs.as_deref(), small.by_hand.as_deref()];
     let named = ["The scene", "The values that differ", "By hand"].into_iter().zip(parts);
     named.filter_map(|(name, words)| Some((name, words?))).collect()
 }
