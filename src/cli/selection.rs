@@ -21,7 +21,7 @@ impl Selection {
             let bare = bare.strip_suffix(".xml").unwrap_or(bare);
             let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
             if !names.iter().any(|name| takes(&pattern, name)) {
-                bail!("{word} names no scene; there are {}", near(bare, names));
+                bail!("{word} names no scene; there are {}", nearest_names(bare, names));
             }
             patterns.push(pattern);
         }
@@ -44,7 +44,7 @@ fn takes(pattern: &Pattern, name: &str) -> bool {
 const EXAMPLES: usize = 3;
 
 /// Returns the names that are nearest to the typed one.
-fn near(typed: &str, names: &[&str]) -> String {
+fn nearest_names(typed: &str, names: &[&str]) -> String {
     let shown = near::nearest(typed, names.iter().copied(), EXAMPLES).join(", ");
     if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }
 }

@@ -26,7 +26,7 @@ impl From<&Grade> for EarlierGrade {
 pub struct Changes<'a> {
     /// Points of these groups in the earlier grading, without extra ones; `None` if it had none.
     pub points: Option<f64>,
-    /// Points that could be reached in them.
+    /// The points that these groups are worth.
     pub max_points: f64,
     /// Scenes that became right.
     pub right: Vec<&'a SceneGrade>,

@@ -109,7 +109,7 @@ pub struct Judgement {
     pub factor: Option<[f64; 2]>,
     /// The form of the approach polynomial.
     pub form: Form,
-    /// Polynomials that have lost other small coefficients than the reference's have.
+    /// The number of polynomials that lack other small coefficients than the reference's.
     pub lost: u64,
     /// Used shares of the tolerances.
     pub shares: Shares,

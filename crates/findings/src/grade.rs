@@ -280,7 +280,7 @@ pub enum SubmissionFault<'a> {
 pub struct GroupGrade {
     /// The group's name.
     pub name: String,
-    /// The readers who see it.
+    /// The readers who see the group.
     pub visibility: Visibility,
     /// The hints that students get for its scenes.
     pub hints: Hints,
@@ -296,7 +296,7 @@ pub struct GroupGrade {
     pub all_or_nothing: bool,
     /// Points for speed, where the suite gives any.
     pub speed: Option<SpeedGrade>,
-    /// The course's own words on it.
+    /// The course's own words on the group.
     #[serde(default)]
     pub note: Option<CourseNote>,
     /// The worst verdict of its scenes.

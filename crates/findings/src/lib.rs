@@ -5,6 +5,12 @@
 //! `grading` keeps them, `report` and `server` read them. They serialize themselves, and read back bit for bit. The
 //! data of an assignment (known mistakes, formulas, letters) are named by their keys.
 //!
+//! Four types say whether something is accepted, because four things can be. [`parity::Overall`] has the original's
+//! words for a trace (`passed`), [`fair::FairVerdict`] those of the fair rules (`rejected`). Reports are published with
+//! these words, so neither can have the other's. [`Ruling`] has the result of either book in common words, with damage
+//! distinguished from wrong answers. [`Verdict`] is about a run, of which the trace is only a part: a program can also
+//! crash, or meet a limit.
+//!
 //! A finding in words:
 //!
 //! ```

@@ -38,9 +38,9 @@ pub struct LocatedFailure {
     pub failing: FailureKind,
     /// The contents of all these scenes, the most general first; the scenes can't distinguish them.
     pub contents: Vec<Content>,
-    /// The number of scenes in which it fails; all of them contain it.
+    /// The number of scenes in which the program fails; all of them have this content.
     pub failed: usize,
-    /// The number of scenes that contain it.
+    /// The number of scenes with this content.
     pub with: usize,
     /// The number of scenes that were run and do not contain it; the program fails in none of these.
     pub without: usize,

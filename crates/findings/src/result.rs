@@ -294,7 +294,7 @@ pub enum SavedTrace {
     In(PathBuf),
     /// The trace could not be kept.
     Lost {
-        /// The folder for it.
+        /// The folder for the run.
         folder: PathBuf,
         /// The reason that the operating system gives.
         error: String,

@@ -33,7 +33,7 @@ pub struct SmallestScene {
     pub by_hand: Option<String>,
     /// The arguments with which `detect` shows the pair that is wrong; with full hints only.
     pub detect: Option<String>,
-    /// The card that a page shows of it.
+    /// The scene's card on a page.
     pub card: Option<String>,
     /// The card for students.
     pub card_for_students: Option<String>,
@@ -53,7 +53,7 @@ impl SmallestScene {
         found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
     }
 
-    /// Cuts it down to what hints allow for students, except for its explanations.
+    /// Cuts the scene down to what hints allow for students, except for its explanations.
     pub fn cut(&mut self, hints: Hints) {
         if hints < Hints::Full {
             (self.differs, self.by_hand, self.detect) = (None, None, None);

@@ -40,7 +40,7 @@ pub struct ProgramRun {
 impl ProgramRun {
     /// Returns a program that did not run, as if it had ended well after it wrote its trace.
     #[must_use]
-    pub fn well() -> Self {
+    pub fn not_run() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
         Self { ended: RunEnd::Exited(0), measured, stdout: String::new(), stderr: String::new() }
     }
@@ -274,7 +274,7 @@ mod tests {
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let task = &SceneTask { name: "a/b".to_owned(), xml: Vec::new(), scene, recording: None };
-        let program = ProgramRun::well();
+        let program = ProgramRun::not_run();
         let limits = &RunLimits::default();
         for (hints, expected) in [
             (Hints::None, None),

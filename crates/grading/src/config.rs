@@ -56,7 +56,7 @@ pub struct Group<Scene = Pattern> {
     pub name: String,
     /// The group's points, credit and visibility.
     pub marking: Marking,
-    /// The course's own words on it.
+    /// The course's own words on the group.
     pub note: Option<CourseNote>,
     /// The group's scenes, in the order of the patterns, each pattern's in alphabetical order.
     pub scenes: Vec<Scene>,
@@ -78,7 +78,7 @@ pub struct Marking {
     pub points: f64,
     /// The rule for partial success.
     pub credit: Credit,
-    /// The readers who see it.
+    /// The readers who see the group.
     pub visibility: Visibility,
     /// The hints for students about its scenes.
     pub hints: Hints,

@@ -72,7 +72,7 @@ impl Recipe<'_> {
             Ok(file) => return self.stage_opened(file, &path),
             Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
                 Some(file) => return self.stage_unpacked(file, &path),
-                None => upload::without(name, folder),
+                None => upload::explain_missing_program(name, folder),
             },
             Err(CollectError::System { source, .. })
                 if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
@@ -123,7 +123,7 @@ impl Recipe<'_> {
         }
         match open_in(&top, self.program) {
             Ok(file) => copy_program(file, &top.join(self.program), self.backend),
-            Err(_) => Ok(StagedProgram::unusable(path, upload::without(self.program, &top))),
+            Err(_) => Ok(StagedProgram::unusable(path, upload::explain_missing_program(self.program, &top))),
         }
     }
 }
@@ -227,13 +227,17 @@ mod tests {
         }
         std::fs::rename(hw.join("FOSSSim"), hw.join("main.cpp")).unwrap();
         let without = program(&packed(&class, "without.tar.gz")).refused;
-        assert_eq!(without, Some(upload::without("FOSSSim", &hw)), "it says what it looked for and what it found");
+        assert_eq!(
+            without,
+            Some(upload::explain_missing_program("FOSSSim", &hw)),
+            "it says what it looked for and what it found"
+        );
         std::fs::write(&archive, [0x1f, 0x8b, 8, 0, 0, 0]).unwrap();
         let damaged = program(&archive).refused.map(|why| format!("{why:?}"));
         assert!(damaged.as_ref().is_some_and(|why| why.contains("damaged")), "{damaged:?}");
         // Two archives, and the right one is unknown.
         std::fs::copy(moodle.join("hw.tgz"), moodle.join("other.tgz")).unwrap();
         let two = staged(|recipe| recipe.file_in(&moodle, "FOSSSim", None)).refused;
-        assert_eq!(two, Some(upload::without("FOSSSim", &moodle)));
+        assert_eq!(two, Some(upload::explain_missing_program("FOSSSim", &moodle)));
     }
 }

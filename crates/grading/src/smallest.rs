@@ -68,13 +68,13 @@ pub struct WrongScenes<'a> {
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
 pub struct ShrunkScene {
-    /// The reason why the program is wrong on it.
+    /// The reason why the program is wrong on the scene.
     pub reason: WrongReason,
     /// The scene that it is made of.
     pub origin: String,
     /// The scene.
     pub small: SmallScene,
-    /// The program's run on it.
+    /// The program's run on the scene.
     pub seen: Observation,
 }
 

@@ -30,7 +30,7 @@ pub fn judge_trace<'a, R: Read + Send>(
     let examined = examine(&task.scene, counted, KeptPart::All, &options, progress);
     let run = Run {
         task,
-        program: &ProgramRun::well(),
+        program: &ProgramRun::not_run(),
         judged: &examined.outcome,
         trace_bytes: bytes.load(Ordering::Relaxed),
         rules: plan.rules,

@@ -13,7 +13,7 @@ const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
 
 /// Returns why there is no program to run: the expected name, and what there is instead.
-pub(super) fn without(program: &str, folder: &Path) -> UnusableReason {
+pub(super) fn explain_missing_program(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => list_contents(program, &opened),
         Err(error) => FolderContents::Unreadable(error.to_string()),
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn what_is_there_instead_of_the_program_is_listed_and_looked_through() {
         let folder = tempfile::tempdir().unwrap();
-        let found = || match without("FOSSSim", folder.path()) {
+        let found = || match explain_missing_program("FOSSSim", folder.path()) {
             UnusableReason::NoProgram { sought, found } if sought == "FOSSSim" => found,
             other => panic!("{other:?}"),
         };
@@ -91,7 +91,7 @@ mod tests {
         }
         let FolderContents::Others { names, more, .. } = found() else { panic!("it holds something") };
         assert_eq!((names[0].as_str(), names[1].as_str(), more), ("a0\\n", "a1\\n", 6));
-        let nowhere = without("FOSSSim", Path::new("/nowhere"));
+        let nowhere = explain_missing_program("FOSSSim", Path::new("/nowhere"));
         assert!(matches!(nowhere, UnusableReason::NoProgram { found: FolderContents::Unreadable(_), .. }));
     }
 }

@@ -35,7 +35,7 @@ impl<'a> Budget<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR } else { PARITY };
-        let at_least = least(scene).saturating_mul(factor);
+        let at_least = least_of_scene(scene).saturating_mul(factor);
         Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
     }
 
@@ -89,7 +89,7 @@ impl<'a> Budget<'a> {
 
 /// Returns the least work of the scene's own run: a detection pass and an iteration of Newton's method for each step,
 /// if there are any. Nearly all traces stay below the allowed multiple of this, and the scene need not be run.
-fn least(scene: &Scene) -> u64 {
+fn least_of_scene(scene: &Scene) -> u64 {
     let pass = match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => pairs(scene).count() as u64,
         Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0,

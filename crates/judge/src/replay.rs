@@ -361,7 +361,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             }
             let is_right = slot.result.firsts.is_empty() && slot.fair.findings.is_empty();
             if !is_right && !self.damaged {
-                let parity = StepFindings { firsts: &slot.result.firsts, more: slot.result.more() };
+                let parity = StepFindings { firsts: &slot.result.firsts, more: slot.result.further_counts() };
                 let fair = StepFindings { firsts: &slot.fair.findings, more: slot.fair.more };
                 progress.step_wrong(&WrongStep { step: slot.step, parity, fair });
             }
@@ -393,7 +393,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         if let Some(error) = slot.error {
             // If the scene itself has no result, no answer is right.
             has_judged &= reach.has_result(step);
-            slot.fair = StepJudgement::default().also(records, FindingDetail::NoResult { error });
+            slot.fair = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
             let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
             let identical = slot.result.identical;

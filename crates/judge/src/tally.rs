@@ -58,7 +58,7 @@ impl StepResult {
     }
 
     /// Returns the number of findings of each kind after the first.
-    pub(super) fn more(&self) -> FindingCounts {
+    pub(super) fn further_counts(&self) -> FindingCounts {
         let mut more = FindingCounts::default();
         for kind in self.firsts.iter().map(Finding::kind) {
             more.add(kind, self.counts.get(kind).saturating_sub(1));

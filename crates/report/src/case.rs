@@ -9,7 +9,7 @@ pub struct Case {
     pub scene: String,
     /// The origin of the trace.
     pub trace: String,
-    /// Whether the fair rules accept it.
+    /// Whether the fair rules accept the trace.
     pub accepted: bool,
     /// A further remark, such as how its program ended, or why it can't be read.
     pub note: Option<String>,

@@ -167,7 +167,7 @@ view! {
         scene: &'a str = &case.scene,
         /// The trace, or the program that left it.
         trace: &'a str = &case.trace,
-        /// Whether the fair rules accept it.
+        /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
         /// The way the program ended, where it did not end well.
         note: Option<&'a str> = case.note.as_deref(),

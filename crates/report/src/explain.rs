@@ -44,7 +44,7 @@ pub(crate) struct ExplanationParts {
     pub(crate) is_likely: bool,
     /// The sentence.
     pub(crate) what: String,
-    /// The evidence for it.
+    /// The evidence for the sentence.
     pub(crate) evidence: Option<String>,
     /// The exact form, and the mistakes that can't be distinguished from it.
     pub(crate) details: Vec<String>,
@@ -157,7 +157,7 @@ view! {
         pub reproduced: u64 = explanation.reproduced,
         /// The number of polynomials or steps that were examined.
         pub samples: u64 = explanation.samples,
-        /// Keys of mistakes that can't be distinguished from it.
+        /// Keys of mistakes that can't be distinguished from this one.
         pub same_as: Vec<String> = explanation.same_as.clone(),
         /// A small instance.
         pub example: Option<ExampleView> = explanation.example.as_ref().map(ExampleView::from),

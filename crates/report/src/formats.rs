@@ -26,7 +26,7 @@ macro_rules! formats {
             /// All formats.
             pub const ALL: &'static [Self] = &[$(Self::$format),+];
 
-            /// Returns the name under which the command line knows it.
+            /// Returns the format's name on the command line.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$format => $name,)+ }

@@ -63,7 +63,7 @@ impl Supervisor {
         command
     }
 
-    /// Starts it for a run, with the descriptors that the run's walls need.
+    /// Starts the supervisor of a run, with the descriptors that the run's walls need.
     fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
         let begin = || -> io::Result<_> {
             let (mut child, control) = spawn_connected(self.command(MODE_RUN))?;

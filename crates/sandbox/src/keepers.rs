@@ -71,8 +71,8 @@ impl Keeper {
         Self { kind, child: Some(child), socket }
     }
 
-    /// Requests a run of an order of its kind, whose files have these contents; returns the connection to its
-    /// supervisor, and the supervisor's answer.
+    /// Requests the run of an order, whose files have these contents; returns the connection to the run's supervisor,
+    /// and the file that the supervisor's answers come by.
     pub(super) fn ask(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
@@ -146,7 +146,7 @@ impl Host {
         }
     }
 
-    /// Ends it, whatever it does.
+    /// Ends the keeper, whatever it does.
     pub(super) fn kill(&mut self) {
         let child = match self {
             Self::Own(child) => Some(child),

@@ -234,13 +234,13 @@ impl Provider {
         // Some providers put the address into the token, others only into a further answer.
         let more = match said.email {
             Some(_) => None,
-            None => self.more(&client, answer.access_token().clone(), claims.subject().clone()).await?,
+            None => self.ask_for_claims(&client, answer.access_token().clone(), claims.subject().clone()).await?,
         };
         self.read(claims.subject().to_string(), more.unwrap_or(said))
     }
 
     /// Returns the claims about a person beyond their token, if the provider has an address for these.
-    async fn more(
+    async fn ask_for_claims(
         &self,
         client: &Client,
         token: AccessToken,
@@ -282,7 +282,7 @@ fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
     ProviderFault::Rejected(format!("the provider's answer is not accepted: {why}"))
 }
 
-/// Sends a request, away from the threads that must not wait.
+/// Sends a request on a thread that may block.
 async fn send(agent: Agent, request: HttpRequest) -> Result<HttpResponse, std::io::Error> {
     let sent = tokio::task::spawn_blocking(move || {
         let (head, mut body) = agent.run(request).map_err(std::io::Error::other)?.into_parts();

@@ -15,7 +15,7 @@ pub struct Problem {
     pub status: u16,
     /// The fault of this request.
     pub detail: String,
-    /// The advice about it.
+    /// The advice about the problem.
     pub remedy: String,
     /// The seconds after which it may work, if that is known.
     #[serde(skip)]

@@ -113,7 +113,7 @@ pub struct Outcome {
     /// The most that could be had.
     #[schema(value_type = Option<Decimal>)]
     pub max_points: Option<String>,
-    /// One line about it.
+    /// One line about the result.
     pub summary: String,
     /// The grader's version.
     pub version: String,

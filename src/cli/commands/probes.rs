@@ -96,7 +96,7 @@ impl ProgramUnderTest {
         Ok(ready)
     }
 
-    /// Runs it under these limits.
+    /// Runs the program under these limits.
     pub(super) fn runner<'a>(&'a self, limits: &'a RunLimits) -> Runner<'a> {
         Runner {
             folders: &self.folders,
@@ -140,7 +140,7 @@ impl ProgramUnderTest {
         self.plan.scenes().cloned().collect()
     }
 
-    /// Runs it on these scenes. Nothing when it was interrupted.
+    /// Runs the program on these scenes; `None` if that was interrupted.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
         let long = self.limits();
         // After a run that has ended at a limit.

@@ -336,9 +336,9 @@ fosssim_num::closed_set! {
         NoTurn = "zones do not turn",
         /// The zones turn less than they should.
         LessTurn = "zones do not turn as far as they should",
-        /// The zones turn further.
+        /// The zones turn further than they should.
         MoreTurn = "zones turn further than they should",
-        /// The zones turn the other way.
+        /// The zones turn in the opposite direction.
         TurnBack = "zones turn the other way round",
         /// The zones turn by another angle.
         Turn = "zones do not turn by the angle that they should",

@@ -31,11 +31,11 @@ impl OrdinaryRange {
 
     /// Returns whether nothing in a state is out of the ordinary.
     pub fn holds(&self, state: &State) -> bool {
-        self.beyond(state).is_none()
+        self.find_outside(state).is_none()
     }
 
     /// Returns the first particle whose state is outside of the range.
-    pub(super) fn beyond(&self, state: &State) -> Option<usize> {
+    pub(super) fn find_outside(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
         let far = (0..particles).find(|&particle| {

@@ -57,9 +57,9 @@ impl<'a> Reach<'a> {
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
         let found = (!is_lost).then(|| self.beyond_reach(&records)).flatten();
         match (known, found) {
-            (Some(judged), Some(detail)) if judged.total() == 0 => (judged.also(records, detail), 0),
+            (Some(judged), Some(detail)) if judged.total() == 0 => (judged.with_finding(records, detail), 0),
             (Some(judged), _) => (judged, 0),
-            (None, Some(detail)) => (StepJudgement::default().also(records, detail), 0),
+            (None, Some(detail)) => (StepJudgement::default().with_finding(records, detail), 0),
             (None, None) => {
                 let simulation = self.other.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::WhereNeeded));
                 let begin = simulation.work();
@@ -79,7 +79,7 @@ impl<'a> Reach<'a> {
     /// Returns the first particle at a place that the reference never comes near.
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
-            let particle = self.range.beyond(state)?;
+            let particle = self.range.find_outside(state)?;
             let (position, velocity) = (at(&state.positions, particle), at(&state.velocities, particle));
             Some(FindingDetail::BeyondReach { particle, position: position.into(), velocity: velocity.into() })
         })

@@ -31,7 +31,7 @@ pub(crate) fn judge(
         StepJudgement::identical(context, records.step, records.end.polynomials.len())
     } else {
         follow(context, simulation, records)
-            .unwrap_or_else(|error| StepJudgement::default().also(records, FindingDetail::NoResult { error }))
+            .unwrap_or_else(|error| StepJudgement::default().with_finding(records, FindingDetail::NoResult { error }))
     };
     compare_records(context, records, &mut judged);
     judged

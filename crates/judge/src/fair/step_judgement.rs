@@ -65,7 +65,7 @@ impl StepJudgement {
     }
 
     /// Adds one more finding.
-    pub fn also(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
+    pub fn with_finding(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
         self.charge(Finding { step: self.step, frame: self.frame, detail });
         self

@@ -22,7 +22,7 @@ const MANY: usize = 8;
 
 /// Returns the likely mistakes of a program that left several traces, at most three in addition to stages that are
 /// still empty, which count as one and come first. `refuted` are keys of mistakes that right traces of the same program
-/// contradict. The first value without a number does not count, and comes last: it follows from the others.
+/// contradict. The first value that is not a number does not count, and comes last: it follows from the others.
 ///
 /// A scene alone often can't distinguish mistakes; several together nearly always can.
 #[must_use]

@@ -58,7 +58,7 @@ impl<W: Write> Observer for Recorder<W> {
         if self.writer.is_full() {
             self.writer.hand_on(self.log.polynomials.all());
         }
-        if self.writer.borrows() {
+        if self.writer.has_unwritten() {
             self.log.begin_step_behind();
         } else {
             self.log.begin_step();

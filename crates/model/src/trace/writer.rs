@@ -98,7 +98,7 @@ impl<W: Write> Writer<W> {
     }
 
     /// Returns whether polynomials of the log are still to be written.
-    pub(super) fn borrows(&self) -> bool {
+    pub(super) fn has_unwritten(&self) -> bool {
         !self.lists.is_empty()
     }
 

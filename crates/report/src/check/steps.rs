@@ -135,7 +135,7 @@ pub(super) fn only_these(check: &Check<'_>) -> bool {
 }
 
 /// Returns whether all wrong steps are requested.
-pub(super) fn all(check: &Check<'_>) -> bool {
+pub(super) fn are_all_requested(check: &Check<'_>) -> bool {
     check.steps.shown == StepChoice::All
 }
 

@@ -47,7 +47,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let is_told = !is_other_scene(check);
     parts.extend(explanations(check, style).filter(|_| is_told));
     // With all steps shown, it appears there again.
-    let first = first(check).filter(|_| !steps::all(check));
+    let first = first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(section("Where to look", "  - ", &advice::lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| is_told));

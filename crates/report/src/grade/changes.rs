@@ -1,5 +1,5 @@
 //! The changes of a submission since an earlier grading, in words.
-use super::{format_points, phrases::some, points};
+use super::{format_points, phrases::list_some, points};
 use crate::{number::format_count, style::Look};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
@@ -27,7 +27,7 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let named = kinds.into_iter().filter(|(_, _, names)| !names.is_empty());
     let mut lines: Vec<(Look, String)> = named
         .map(|(look, verb, names)| {
-            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), some(&names, NAMED)))
+            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_some(&names, NAMED)))
         })
         .collect();
     if lines.is_empty() {

@@ -1,5 +1,5 @@
 //! A class in numbers: how many points, which scenes few have right, which mistakes many make.
-use super::{likely_mistakes, phrases::some, points, shorten_name};
+use super::{likely_mistakes, phrases::list_some, points, shorten_name};
 use crate::foreign::one_line;
 use crate::{
     number::format_count,
@@ -57,7 +57,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "The same program, byte for byte"));
         for members in &same {
             let names: Vec<String> = members.iter().map(|&number| shorten_name(&grades[number].submission)).collect();
-            let _ = writeln!(text, "  {}", some(&names, most));
+            let _ = writeln!(text, "  {}", list_some(&names, most));
         }
     }
     text

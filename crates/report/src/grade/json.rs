@@ -163,7 +163,7 @@ view! {
     struct GroupView from group: GroupGrade {
         /// The group's name.
         name: String = plain(&group.name),
-        /// The readers who see it.
+        /// The readers who see the group.
         visibility: Visibility = group.visibility,
         /// The worst verdict of its scenes.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]

@@ -74,7 +74,7 @@ pub fn difference(scene: &SceneGrade) -> Option<String> {
 }
 
 /// Returns the first of some names: `a, b, c and 2 more`.
-pub(super) fn some(names: &[impl AsRef<str>], most: usize) -> String {
+pub(super) fn list_some(names: &[impl AsRef<str>], most: usize) -> String {
     let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
     let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
     shown.join(", ") + &more

@@ -143,7 +143,7 @@ impl TraceContent<'_> {
     }
 
     /// Renders the first ones of some calls; the first one is open.
-    fn some(&self, calls: &[StepCall<'_>], open: bool) -> String {
+    fn render_some(&self, calls: &[StepCall<'_>], open: bool) -> String {
         let call =
             |(number, (step, one)): (usize, &StepCall<'_>)| call::html(*step, one, self.depth + 2, open && number == 0);
         let mut out: String = calls.iter().take(CALLS).enumerate().map(call).collect();

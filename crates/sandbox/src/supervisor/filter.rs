@@ -177,7 +177,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &harmless));
     refuse(libc::EPERM, libc::SYS_futex, vec![rule(shared.collect::<io::Result<_>>()?)?]);
     if purpose.announce {
-        refuse(0, libc::SYS_futex, each(1, &SHARED_WAKES)?);
+        refuse(0, libc::SYS_futex, match_each(1, &SHARED_WAKES)?);
     }
     refuse(libc::EINVAL, libc::SYS_madvise, vec![all_differ(2, &HARMLESS_ADVICE)?]);
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
@@ -248,12 +248,12 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     rules.insert(libc::SYS_clone, clone);
     if purpose.announce {
         // The supervisor answers itself that a thread may have ended, without a wait that others could end.
-        rules.insert(libc::SYS_futex, each(1, &SHARED_WAITS)?);
+        rules.insert(libc::SYS_futex, match_each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {
         // The supervisor checks the place of the file.
         rules.extend(always(calls::LOCKS));
-        rules.insert(libc::SYS_fcntl, each(1, &LOCK_COMMANDS)?);
+        rules.insert(libc::SYS_fcntl, match_each(1, &LOCK_COMMANDS)?);
     }
     if purpose.tools && purpose.announce && !purpose.own_user {
         // The supervisor changes the mode itself, in the working folder only.
@@ -284,7 +284,7 @@ fn differ(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result<Secco
 }
 
 /// Returns rules that match if the argument is one of the values.
-fn each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
+fn match_each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
     values.iter().map(|value| rule(vec![condition(argument, SeccompCmpOp::Eq, *value)?])).collect()
 }
 

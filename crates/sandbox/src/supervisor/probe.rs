@@ -42,7 +42,7 @@ fn probe() -> io::Result<Probe> {
     let root = sys::user() == 0;
     let roots_group = !root && sys::group() == 0;
     let mut probe = Probe { root, roots_group, landlock_abi: sys::landlock_version(), ..Probe::default() };
-    probe.reaper = why(sys::become_reaper());
+    probe.reaper = failure_reason(sys::become_reaper());
     (probe.execution, probe.from_memory) = try_execution();
     probe.namespaces = try_namespaces();
     match try_group() {
@@ -172,14 +172,14 @@ fn try_namespaces() -> Option<String> {
 
 /// Puts up one wall after the other.
 fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
-    probe.limits = why(sys::limit(Resource::Core, 0).and_then(|()| sys::limit(Resource::Fsize, 1 << 30)));
+    probe.limits = failure_reason(sys::limit(Resource::Core, 0).and_then(|()| sys::limit(Resource::Fsize, 1 << 30)));
     if let Some(user) = user {
-        probe.own_user = why(sys::switch_user(user));
+        probe.own_user = failure_reason(sys::switch_user(user));
     }
-    probe.no_new_privileges = why(sys::no_new_privileges());
+    probe.no_new_privileges = failure_reason(sys::no_new_privileges());
     probe.landlock = match probe.landlock_abi {
         0 => Some("the kernel has no Landlock, or it is switched off".into()),
-        version => why(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
+        version => failure_reason(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
     };
     let filters = |announce| {
         let own_process = Some(std::process::id() as i32);
@@ -202,11 +202,11 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
         let listener = sys::install_filter(&filters(true)?[0], true)?;
         listener.map(|listener| listener.as_fd().try_clone_to_owned()).transpose().map(drop)
     };
-    probe.notify = why(announce());
-    probe.seccomp = why(install());
+    probe.notify = failure_reason(announce());
+    probe.seccomp = failure_reason(install());
     probe
 }
 
-fn why(result: io::Result<()>) -> Option<String> {
+fn failure_reason(result: io::Result<()>) -> Option<String> {
     result.err().map(|error| error.to_string())
 }

@@ -102,7 +102,7 @@ impl Row {
 
 /// A type that a column may hold.
 pub trait Column: Sized {
-    /// Reads it.
+    /// Reads the value of a column.
     ///
     /// # Errors
     /// When it holds something else.
@@ -129,7 +129,7 @@ columns! {
 
 /// A type as which a whole row is read.
 pub trait FromRow: Sized {
-    /// Reads it.
+    /// Reads the value of a column.
     ///
     /// # Errors
     /// When a column is not there, or holds something else.

@@ -46,7 +46,7 @@ pub struct Assignment {
     pub slug: String,
     /// The assignment's name.
     pub title: String,
-    /// Whether students see it.
+    /// Whether students see the assignment.
     pub visible: bool,
     /// The rules by which it is graded.
     pub settings: Settings,
@@ -102,7 +102,7 @@ pub struct Submission {
     /// The delay of a late submission, if it costs points; points that staff gave lose nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late: Option<Lateness>,
-    /// The words of staff about it.
+    /// The words of staff about the submission.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
     /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
@@ -512,7 +512,7 @@ impl<'a> Entry<'a> {
     }
 }
 
-/// Writes it into the audit log.
+/// Writes an entry into the audit log.
 pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, actor, course, assignment, submission, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";

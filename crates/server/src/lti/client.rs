@@ -184,7 +184,7 @@ impl Client {
         }
         let settings = &platform.settings;
         let now = now();
-        let assertion = keys::signing(database).await?.sign(&json!({
+        let assertion = keys::signing_key(database).await?.sign(&json!({
             "iss": settings.client_id,
             "sub": settings.client_id,
             "aud": settings.audience.as_ref().unwrap_or(&settings.token_url),

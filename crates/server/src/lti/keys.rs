@@ -73,7 +73,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
 }
 
 /// Returns the key that signs: the newest that platforms had the time to read of, or the oldest.
-pub(super) async fn signing(database: &Database) -> Result<SigningKey, DbError> {
+pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
     let row = known.or(rows.last()).ok_or_else(|| DbError::Other("there is no key".to_owned()))?;

@@ -349,7 +349,7 @@ pub async fn deep_linking_response(
     if let Some(data) = arrival.deep_linking.as_ref().and_then(|wanted| wanted.data.as_ref()) {
         claims["https://purl.imsglobal.org/spec/lti-dl/claim/data"] = json!(data);
     }
-    keys::signing(database).await?.sign(&claims)
+    keys::signing_key(database).await?.sign(&claims)
 }
 
 #[cfg(test)]

@@ -242,7 +242,7 @@ pub(super) enum ColumnState {
     Known(String),
     /// The caller must have it made; others wait this long.
     Unclaimed,
-    /// Another caller makes it.
+    /// Another caller makes the column.
     Claimed,
 }
 

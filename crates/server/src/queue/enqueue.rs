@@ -63,7 +63,7 @@ impl Turn {
 /// A job to be put into the queue.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
-    /// The lane that does it.
+    /// The lane that does the work.
     pub lane: Lane,
     /// The submission that it is about.
     pub submission: Option<i64>,

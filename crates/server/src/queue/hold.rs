@@ -36,7 +36,7 @@ pub struct Progress {
     /// Scenes that have their verdict.
     #[schema(maximum = 1_000_000)]
     pub done: u32,
-    /// All scenes that count for it.
+    /// All scenes of the grading.
     #[schema(maximum = 1_000_000)]
     pub all: u32,
 }

@@ -12,7 +12,7 @@ const RECENT: i64 = 50;
 /// A waiting job's place in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// The number of jobs before it.
+    /// The number of jobs before this one.
     pub ahead: i64,
     /// The expected time until its result, from the recent jobs and the slots of the workers that are alive; `None`
     /// without jobs or workers.

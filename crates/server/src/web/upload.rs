@@ -55,7 +55,7 @@ impl UntakenBytes {
 pub(super) struct ReceivedFile {
     /// The place of the file until it is stored.
     pub(super) file: TempPath,
-    /// The sender's name for it.
+    /// The sender's name for the file.
     pub(super) name: Option<String>,
     /// The upload's form (a program, sources, traces), if the request named it.
     pub(super) form: Option<String>,

@@ -91,7 +91,7 @@ impl Child {
         Ok(Self { group, end })
     }
 
-    /// Waits for its end.
+    /// Waits for the child's end.
     pub(super) async fn wait(&self) -> End {
         let mut end = self.end.clone();
         match end.wait_for(Option::is_some).await {
@@ -106,7 +106,7 @@ impl Child {
         self.signal(libc::SIGTERM, false);
     }
 
-    /// Ends it and its group.
+    /// Ends the child and its group.
     pub(super) fn kill(&self) {
         self.signal(libc::SIGKILL, true);
     }

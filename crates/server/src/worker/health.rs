@@ -66,7 +66,7 @@ impl<G: Grader> Health<G> {
     }
 
     /// Waits until the worker can grade; false when it is to stop before.
-    pub(super) async fn well(&self, stop: &CancellationToken) -> bool {
+    pub(super) async fn wait_until_able(&self, stop: &CancellationToken) -> bool {
         let mut wait = FIRST_WAIT;
         if self.is_proven() {
             return !stop.is_cancelled();

@@ -206,7 +206,7 @@ impl Grader for Program {
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
         }
-        // Read before it runs: another grader may be installed meanwhile.
+        // The digest is taken before the grader runs: another one may be installed meanwhile.
         let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);

@@ -37,7 +37,7 @@ struct Parts {
     server: String,
     authorization: String,
     name: String,
-    /// Milliseconds, as the server wishes.
+    /// The time between two renewals of a lease in milliseconds, as the server sets it.
     tick_every: AtomicU64,
 }
 
@@ -94,7 +94,7 @@ fn format_lease(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
 
-fn away(error: impl fmt::Display) -> SourceError {
+fn no_answer(error: impl fmt::Display) -> SourceError {
     SourceError::Away(format!("the server does not answer: {error}"))
 }
 
@@ -107,7 +107,7 @@ impl Parts {
     fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, SourceError> {
         let answer = self.post(path, body)?;
         let mut answer = check_status(answer)?;
-        let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
+        let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(no_answer)?;
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
@@ -123,7 +123,7 @@ impl Parts {
     fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, SourceError> {
         let body = serde_json::to_vec(body).map_err(|error| SourceError::Refused(error.to_string()))?;
         let request = self.sign(self.agent.post(self.url(path)), None);
-        request.header("Content-Type", "application/json").send(&body).map_err(away)
+        request.header("Content-Type", "application/json").send(&body).map_err(no_answer)
     }
 }
 
@@ -151,7 +151,7 @@ impl JobSource for RemoteSource {
             if answer.status() == 204 {
                 return Ok(None);
             }
-            let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(away)?;
+            let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(no_answer)?;
             serde_json::from_slice(&text)
                 .map(Some)
                 .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
@@ -183,7 +183,7 @@ impl JobSource for RemoteSource {
         let (lease, wanted, place) = (format_lease(lease), digest.clone(), file.to_owned());
         self.call(move |parts| {
             let request = parts.agent.get(parts.url(&format!("files/{wanted}")));
-            let answer = parts.sign(request, Some(&lease)).call().map_err(away)?;
+            let answer = parts.sign(request, Some(&lease)).call().map_err(no_answer)?;
             let mut answer = check_status(answer)?;
             let written = fs::File::create_new(&place).and_then(|mut output| {
                 let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
@@ -192,11 +192,11 @@ impl JobSource for RemoteSource {
             written.map(drop).map_err(|error| {
                 // Anybody who tries again wants to find nothing.
                 drop(fs::remove_file(&place));
-                away(error)
+                no_answer(error)
             })
         })
         .await?;
-        let found = digest_of_file(file).await.map_err(away)?;
+        let found = digest_of_file(file).await.map_err(no_answer)?;
         if found.digest != *digest {
             drop(fs::remove_file(file));
             return Err(SourceError::Away(format!("the server's bytes do not match {digest}")));
@@ -210,7 +210,7 @@ impl JobSource for RemoteSource {
         self.call(move |parts| {
             let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
             let request = parts.sign(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
-            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(away)?;
+            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(no_answer)?;
             check_status(answer).map(drop)
         })
         .await?;

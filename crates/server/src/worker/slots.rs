@@ -74,7 +74,7 @@ pub async fn work<D: JobSource, G: Grader>(
 
 async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: CancellationToken) {
     let mut wait = FIRST_WAIT;
-    while health.well(&stop).await {
+    while health.wait_until_able(&stop).await {
         match source.claim().await {
             Ok(None) => {
                 wait = FIRST_WAIT;

@@ -58,7 +58,7 @@ impl Axes {
     }
 
     /// Returns the difference of points in the scene's coordinates.
-    pub fn back(self, v: Vec2) -> Vec2 {
+    pub fn turn_back(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = TURN;
         match self {
             Self::Rotated => Vec2::new(cosine * v.x + sine * v.y, cosine * v.y - sine * v.x),
@@ -77,6 +77,6 @@ mod tests {
         let (cosine, sine) = TURN;
         assert!((cosine * cosine + sine * sine - 1.0).abs() < f64::EPSILON);
         let v = Vec2::new(3.0, -7.0);
-        assert!(length(Axes::Rotated.back(Axes::Rotated.direction(v)) - v) < 1e-14);
+        assert!(length(Axes::Rotated.turn_back(Axes::Rotated.direction(v)) - v) < 1e-14);
     }
 }

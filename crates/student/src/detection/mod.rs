@@ -258,7 +258,7 @@ pub fn detect(
     if !within_step(student, time, world.scene.time_step) {
         return Ok(None);
     }
-    let mut n = axes_of(student, pair).back(contact_vector(student, &motion, time));
+    let mut n = axes_of(student, pair).turn_back(contact_vector(student, &motion, time));
     if matches!(motion, PairMotion::Edge { .. }) && length(n) == 0.0 {
         return Ok(None);
     }

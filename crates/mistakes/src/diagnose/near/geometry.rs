@@ -118,7 +118,7 @@ impl<'a> PlacedPair<'a> {
     }
 
     /// Returns the boxes of all other bodies that begin between the two on an axis, as a sweep meets them.
-    pub fn between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
+    pub fn boxes_between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
         let [one, other] = self.boxes().map(|one| one[0][axis]);
         let all = self.moment.boxes.iter().enumerate().filter(move |(body, _)| !own.contains(body));

@@ -107,7 +107,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
         told.push(one);
     }
     let as_told = |(one, exceptions, right): (Variant, u64, u64)| PairTrait {
-        what: one.what(),
+        what: one.describe(),
         exact: one.exact(),
         right,
         exceptions,

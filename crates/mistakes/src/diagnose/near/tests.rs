@@ -76,6 +76,6 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
 #[test]
 fn no_trait_gives_a_formula_away() {
     for one in traits::variants() {
-        assert_eq!(formula_in(&one.what()), None, "{}", one.what());
+        assert_eq!(formula_in(&one.describe()), None, "{}", one.describe());
     }
 }

@@ -51,7 +51,7 @@ impl Variant {
         }
     }
 
-    pub fn what(&self) -> String {
+    pub fn describe(&self) -> String {
         self.row.what.replace("{axis}", self.axis.name())
     }
 
@@ -157,7 +157,7 @@ traits! {
         "One between them on {axis} does not overlap the first one on the other axis"
         |pair, axis, _| has_gap(pair, axis);
     ONE_AXIS COUNTS "many bodies begin between the two {axis}, as if a sweep gave up early"
-        "More than {n} begin between them on {axis}" |pair, axis, n| pair.between(axis).count() as f64 > n;
+        "More than {n} begin between them on {axis}" |pair, axis, n| pair.boxes_between(axis).count() as f64 > n;
     ONE_AXIS NO_NUMBER "the particle begins after the other body {axis}" "Its smallest {axis} is greater"
         |pair, axis, _| lows(pair)[0][axis] > lows(pair)[1][axis];
     ONE_AXIS NO_NUMBER "the particle begins before the other body {axis}" "Its smallest {axis} is less"
@@ -232,7 +232,7 @@ fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
     let [one, other] = pair.boxes();
     let across = 1 - axis;
     let begins = if one[0][axis] <= other[0][axis] { one } else { other };
-    pair.between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
+    pair.boxes_between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
 }
 
 /// Returns the part of an axis that two boxes have in common.

@@ -6,7 +6,7 @@ use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
     loops, observation, ratios,
-    zones::{Fate, FirstRound, Group, SMALL, center, near, spin},
+    zones::{Fate, FirstRound, Group, SMALL, are_near, center, spin},
 };
 use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongPositions, WrongZoneRounds, WrongZones};
 use fosssim_model::{
@@ -122,7 +122,7 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     for facts in ends {
         let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
         let count = scene.particles.len();
-        if !(0..count).all(|one| near(at(&expected.positions, one), at(&actual.positions, one))) {
+        if !(0..count).all(|one| are_near(at(&expected.positions, one), at(&actual.positions, one))) {
             return observation(StageFault::AfterRounds, Vec::new(), ends.len());
         }
         let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { continue };
@@ -184,7 +184,7 @@ impl ZoneMotions {
             let (was, is) = (at(&first.middle.velocities, one), at(&first.end.velocities, one));
             if length(was) > SMALL {
                 let ratio = is.dot(&was) / was.dot(&was);
-                self.has_stopped_otherwise |= !near(is, ratio * was);
+                self.has_stopped_otherwise |= !are_near(is, ratio * was);
                 self.stopped.push(ratio);
             }
         }
@@ -252,7 +252,7 @@ impl MotionErrors {
         let (should, does) = (ours - from, theirs - from);
         if length(should) > SMALL {
             let ratio = does.dot(&should) / should.dot(&should);
-            self.has_side_shift |= !near(does, ratio * should);
+            self.has_side_shift |= !are_near(does, ratio * should);
             self.shifts.push(ratio);
         } else {
             self.has_side_shift |= length(does) > SMALL;
@@ -282,7 +282,7 @@ impl MotionErrors {
             let velocity = at(&end.velocities, one);
             if length(motion) > SMALL {
                 let ratio = velocity.dot(&motion) / motion.dot(&motion);
-                self.has_other_velocity |= !near(velocity, ratio * motion);
+                self.has_other_velocity |= !are_near(velocity, ratio * motion);
                 self.velocities.push(ratio);
             }
         }

@@ -146,8 +146,8 @@ impl<'a> FirstRound<'a> {
     }
 
     fn is_at(&self, state: &State, particle: usize) -> bool {
-        near(at(&self.end.positions, particle), at(&state.positions, particle))
-            && near(at(&self.end.velocities, particle), at(&state.velocities, particle))
+        are_near(at(&self.end.positions, particle), at(&state.positions, particle))
+            && are_near(at(&self.end.velocities, particle), at(&state.velocities, particle))
     }
 
     fn are_at(&self, state: &State, particles: &[usize]) -> bool {
@@ -271,7 +271,7 @@ impl<'a> FirstRound<'a> {
         if self.are_at(&free, &zone.particles) {
             return Fate::Wrong(WrongZones::MoveOn);
         }
-        let is_back = |one: &usize| near(at(&self.end.positions, *one), at(&stopped.positions, *one));
+        let is_back = |one: &usize| are_near(at(&self.end.positions, *one), at(&stopped.positions, *one));
         let rests = |one: &usize| length(at(&self.end.velocities, *one)) <= SMALL;
         let all = || zone.particles.iter();
         if all().all(is_back) {
@@ -339,6 +339,6 @@ pub(super) fn center(scene: &Scene, group: &Group, state: &State) -> Vec2 {
     over(sum, group.particles.iter().map(|&one| mass(one)).sum())
 }
 
-pub(super) fn near(one: Vec2, two: Vec2) -> bool {
+pub(super) fn are_near(one: Vec2, two: Vec2) -> bool {
     length(one - two) <= SMALL * (1.0 + length(one))
 }

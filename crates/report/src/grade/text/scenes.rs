@@ -1,6 +1,6 @@
 //! The scenes of a submission, group by group. Accepted scenes are counted. Scenes that fail for the same cause are
 //! described once.
-use super::{super::phrases::some, Text, TextDetail, output, verdict_look};
+use super::{super::phrases::list_some, Text, TextDetail, output, verdict_look};
 use crate::foreign::one_line;
 use crate::{
     explain,
@@ -48,7 +48,7 @@ impl<'a> Scenes<'a, '_> {
         }
         let mut folded: BTreeMap<(Verdict, String), u64> = BTreeMap::new();
         for scene in group.scenes.iter().filter(|scene| self.is_folded(scene)) {
-            let example = self.alike(scene).first().filter(|_| !scene.verdict.is_accepted());
+            let example = self.alike_scenes(scene).first().filter(|_| !scene.verdict.is_accepted());
             let like = example.map_or_else(String::new, |example| format!(" like {}", one_line(&example.scene)));
             *folded.entry((scene.verdict, like)).or_default() += 1;
         }
@@ -71,11 +71,11 @@ impl<'a> Scenes<'a, '_> {
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
             && (scene.verdict.is_accepted()
-                || self.alike(scene).first().is_some_and(|first| first.scene != scene.scene))
+                || self.alike_scenes(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
 
     /// Returns the scenes with the cause of this one.
-    fn alike(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
+    fn alike_scenes(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
         let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|one| one.scene == scene.scene);
         self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
     }
@@ -97,12 +97,12 @@ impl<'a> Scenes<'a, '_> {
             lines.extend(words::details(scene).iter().map(|line| one_line(line)));
         }
         lines.extend(explain::lines(&scene.settled, self.options.style).iter().map(|line| one_line(line)));
-        if let [first, alike @ ..] = self.alike(scene)
+        if let [first, alike @ ..] = self.alike_scenes(scene)
             && first.scene == scene.scene
             && !alike.is_empty()
         {
             let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
-            let (many, names) = (format_count(alike.len() as u64, "more scene"), some(&names, NAMED));
+            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_some(&names, NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();

@@ -40,7 +40,7 @@ pub(super) struct Artifacts {
 }
 
 impl Manifest {
-    /// Writes it into a backup's folder.
+    /// Writes the manifest into a backup's folder.
     pub(super) fn write(&self, folder: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
         fs::write(folder.join(FILE), text).context("the backup's manifest can't be written")

@@ -12,11 +12,11 @@ const ASSIGNMENT: (&str, &str) = ("m1", "Theme 2, Milestone 2: continuous-time c
 const STUDENT: (&str, &str) = ("student", "A student");
 
 impl App {
-    /// Makes the example course, with an assignment and a student, where there is no course at all. Returns a link that
-    /// signs the student in once, unless they have been here before.
+    /// Makes the example course, with an assignment and a student, if there is no course yet. Returns a link that signs
+    /// the student in once, unless the example was made before.
     ///
     /// # Errors
-    /// When there are other courses, or a `student` of theirs: this is a real server.
+    /// When there are other courses, or somebody else is called `student`: the server is in real use.
     pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";

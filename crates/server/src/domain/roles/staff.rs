@@ -20,7 +20,7 @@ pub struct Staff(pub(in crate::domain) Member);
 pub struct AssignmentChange<'a> {
     /// The assignment's title.
     pub title: Option<&'a str>,
-    /// Whether students see it.
+    /// Whether students see the assignment.
     pub visible: Option<bool>,
     /// The revision that was changed: the change is rejected if there is a later one.
     pub revision: Option<i64>,

@@ -36,7 +36,7 @@ pub struct Regrade {
     pub reason: String,
     /// The settings by which submissions are graded this time.
     pub settings: Settings,
-    /// The one who began it.
+    /// The account that began the regrading.
     pub by: String,
     /// The time of its creation, in milliseconds since 1970.
     pub created_at: i64,
@@ -68,7 +68,7 @@ pub struct Change {
     pub old_code: Option<String>,
     /// The points that count now.
     pub old_points: Option<String>,
-    /// The line about it.
+    /// One line about the result.
     pub old_summary: Option<String>,
     /// The verdict of the regrade.
     pub new_code: String,
@@ -289,13 +289,13 @@ impl FromRow for Change {
     fn from_row(row: &Row) -> Result<Self, DbError> {
         Ok(read_row!(row => Self {
             submission, number, login, old_code, old_points, old_summary, new_code, new_points, new_summary;
-            why: why(row)?,
+            why: differences(row)?,
         }))
     }
 }
 
 /// Returns the differences of two gradings of one submission.
-fn why(row: &Row) -> Result<Vec<String>, DbError> {
+fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no grade before".to_owned()]);
     };

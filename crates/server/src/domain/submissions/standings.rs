@@ -61,7 +61,7 @@ pub struct CountedSubmission {
     pub is_late: bool,
     /// The most points that could be had.
     pub max_points: Option<String>,
-    /// The line about it.
+    /// One line about the result.
     pub summary: String,
 }
 

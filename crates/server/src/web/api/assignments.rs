@@ -200,7 +200,7 @@ answers! { OK:
     /// Shows students what the suite hides: from now on hidden groups count for them, too.
     put "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         publish(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, true);
-    /// Withholds it again.
+    /// Withholds the publication again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         withhold(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, false);
     /// The standing of all students: the submission that counts, and its points.

@@ -31,11 +31,11 @@ struct SubmissionPage {
     member: Member,
     is_own: bool,
     submission: Submission,
-    /// The work of its owner, and how much they may still do; nothing for others.
+    /// The attempts that the owner has made and may still make; `None` for other readers.
     work: Option<OwnWork>,
     is_moving: bool,
     history: Vec<History>,
-    /// The change that it has made since the one before it.
+    /// The change since the submission before.
     change: Option<String>,
     /// All submissions of its owner, oldest first.
     attempts: Vec<Submission>,
