@@ -30,7 +30,7 @@ const MOST_ITERATIONS: usize = 3;
 /// to compute.
 #[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
-    let mut walk = CollisionWalk::new(scene, pair, step);
+    let mut walk = CollisionWalk::new(scene, pair);
     Simulation::new(scene, RootSearch::WhereNeeded).step(&mut walk).ok()?;
     let text = match (integration(scene, step), walk.finish()) {
         (Some(forces), Some(collisions)) => format!("{forces}\n{collisions}"),

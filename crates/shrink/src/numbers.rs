@@ -131,13 +131,10 @@ fn origins(scene: &Scene) -> Vec<[f64; 2]> {
 }
 
 fn translate(scene: &Scene, origin: [f64; 2]) -> Scene {
-    let mut component = 0;
-    map_numbers(scene, |quantity, _, value| {
-        if quantity != SceneNumber::Place {
-            return value;
-        }
-        component = 1 - component;
-        value - origin[1 - component]
+    let mut components = origin.into_iter().cycle();
+    map_numbers(scene, |quantity, _, value| match quantity {
+        SceneNumber::Place => value - components.next().unwrap_or_default(),
+        _ => value,
     })
 }
 

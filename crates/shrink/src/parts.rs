@@ -31,26 +31,17 @@ impl PartKind {
     /// Returns the scene without these parts.
     pub(crate) fn without_parts(self, scene: &Scene, parts: &Range<usize>) -> Scene {
         let mut scene = scene.clone();
+        let without = |index: usize| match index {
+            index if parts.contains(&index) => None,
+            index if index < parts.start => Some(index),
+            index => Some(index - parts.len()),
+        };
         match self {
             Self::Bodies => {
-                keep_edges(&mut scene, |edge| !parts.contains(&edge.0) && !parts.contains(&edge.1));
-                scene.forces.retain(|force| bodies(force).iter().flatten().all(|body| !parts.contains(body)));
                 scene.particles.drain(parts.clone());
-                let moved = |index: &mut usize| *index -= if *index >= parts.end { parts.len() } else { 0 };
-                scene.edges.iter_mut().flat_map(|edge| [&mut edge.first, &mut edge.second]).for_each(moved);
-                for force in &mut scene.forces {
-                    if let Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } = force {
-                        [first, second].into_iter().for_each(moved);
-                    }
-                }
+                renumber(&mut scene, &without, &Some);
             }
-            Self::Edges => {
-                let mut number = 0;
-                keep_edges(&mut scene, |_| {
-                    number += 1;
-                    !parts.contains(&(number - 1))
-                });
-            }
+            Self::Edges => renumber(&mut scene, &Some, &without),
             Self::HalfPlanes => _ = scene.half_planes.drain(parts.clone()),
             Self::Forces => _ = scene.forces.drain(parts.clone()),
         }
@@ -58,27 +49,25 @@ impl PartKind {
     }
 }
 
-/// Removes all edges but these, by their ends, and the springs on those.
-fn keep_edges(scene: &mut Scene, mut keeps: impl FnMut((usize, usize)) -> bool) {
-    let kept: Vec<bool> = scene.edges.iter().map(|edge| keeps((edge.first, edge.second))).collect();
-    let mut old = kept.iter();
-    scene.edges.retain(|_| old.next() == Some(&true));
-    let before = |index: usize| kept[..index].iter().filter(|is_kept| **is_kept).count();
-    scene.forces.retain_mut(|force| match force {
-        Force::Spring { edge, .. } if !kept[*edge] => false,
-        Force::Spring { edge, .. } => {
-            *edge = before(*edge);
-            true
-        }
-        _ => true,
-    });
-}
+/// The new number of a part; `None` if it is removed.
+type NewNumber<'a> = dyn Fn(usize) -> Option<usize> + 'a;
 
-/// Returns the bodies that a force names, which the removal of bodies renumbers.
-const fn bodies(force: &Force) -> [Option<usize>; 2] {
-    match *force {
-        Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => [Some(first), Some(second)],
-        // A spring names its edge.
-        Force::Spring { .. } | Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => [None; 2],
-    }
+/// Gives bodies and edges their new numbers, and removes edges and forces that depend on removed ones.
+fn renumber(scene: &mut Scene, body: &NewNumber<'_>, edge: &NewNumber<'_>) {
+    let set = |new: Option<usize>, index: &mut usize| new.inspect(|new| *index = *new).is_some();
+    let mut edges: Vec<Option<usize>> = Vec::new();
+    scene.edges.retain_mut(|one| {
+        let is_kept = edge(edges.len()).is_some()
+            && set(body(one.first), &mut one.first)
+            && set(body(one.second), &mut one.second);
+        edges.push(is_kept.then(|| edges.iter().flatten().count()));
+        is_kept
+    });
+    scene.forces.retain_mut(|force| match force {
+        Force::Spring { edge, .. } => set(edges[*edge], edge),
+        Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => {
+            set(body(*first), first) && set(body(*second), second)
+        }
+        Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => true,
+    });
 }

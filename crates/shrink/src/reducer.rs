@@ -55,12 +55,7 @@ impl Reducer<'_> {
     /// `None` if there is no such scene.
     #[must_use]
     pub fn reduce(self, beginnings: Vec<(u32, Scene)>) -> Option<SmallScene> {
-        let mut runs = 0;
-        for (step, scene) in beginnings {
-            if runs >= self.most_runs {
-                return None;
-            }
-            runs += 1;
+        for ((step, scene), runs) in beginnings.into_iter().zip(1..=self.most_runs) {
             if (self.holds)(&scene)? {
                 let mut search = Search::new(&self, scene, runs);
                 let is_minimal = search.run();

@@ -43,7 +43,7 @@ const HUNDREDS: [(&str, usize); 22] = [
     // passwords went, with their digests and limits. Verdicts have words everywhere, and the home page and the log have
     // links; the list of verdicts in a template and the search for members in SQL went.
     ("server", 152),
-    ("shrink", 8),
+    ("shrink", 7),
     // The table of `--timings`.
     // The command `shrink`.
     // Defaults of a folder, the earlier grading and gzip; the comparison of --watch went.

@@ -23,8 +23,6 @@ pub(super) struct CollisionWalk<'a> {
     scene: &'a Scene,
     /// The pair whose detection is written in full, once.
     pair: Option<(Pair, Option<Pass>)>,
-    /// The number of the step in a run.
-    step: u32,
     text: String,
     /// The positions at the begin of the step.
     start: Vec<f64>,
@@ -36,9 +34,9 @@ pub(super) struct CollisionWalk<'a> {
 
 impl<'a> CollisionWalk<'a> {
     /// Begins with a scene's first step.
-    pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Self {
+    pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>) -> Self {
         let start = State::for_scene(scene).positions;
-        Self { scene, pair, step, text: String::new(), start, seen: State::default(), is_telling: false }
+        Self { scene, pair, text: String::new(), start, seen: State::default(), is_telling: false }
     }
 
     /// Returns what was written, if it tells anything.
@@ -55,8 +53,8 @@ impl<'a> CollisionWalk<'a> {
         let &Detection { pass, pair, q_start, q_end, .. } = detection;
         if pass.stage == Stage::Simple {
             let study = &OverlapStudy::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
-            let report = Overlap { study, scene: "small.xml", trace: None, step: self.step, pair, logged: None };
-            return Some(report.text_with(short, Style::Plain));
+            let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
+            return Some(format!("{}:\n{}\n", PairWords(pair), report.body(short, Style::Plain)));
         }
         let motion = &PairMotion::between(self.scene, pair, q_start, q_end);
         let computation =

@@ -31,16 +31,18 @@ impl Overlap<'_> {
     /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
-        self.text_with(exact, style)
+        style.paint(Look::Strong, &title(self.pair, self.step, self.trace, self.scene))
+            + "\n"
+            + &self.body(exact, style)
     }
 
-    /// Renders the report with numbers as this function writes them.
-    pub(crate) fn text_with(&self, number: ShownNumber, style: Style) -> String {
+    /// Renders the report without its title, with numbers as this function writes them.
+    pub(crate) fn body(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
         let heading = |words: &str| format!("\n{}\n", style.paint(Look::Strong, words));
         let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));
-        let mut text = style.paint(Look::Strong, &title(self.pair, self.step, self.trace, self.scene)) + "\n";
-        text += "  simple collisions: the positions at the end of the step count, and the velocities there\n";
+        let mut text =
+            "  simple collisions: the positions at the end of the step count, and the velocities there\n".to_owned();
         text += &motion(&study.motion, number, style);
         text += &heading("At the end of the step");
         if let Some(alpha) = study.alpha {
