@@ -1,5 +1,6 @@
 //! A scene of a suite, ready to be run.
 use super::{
+    library,
     result::{Failure, Reason, SceneResult},
     verdict::Verdict,
 };
@@ -22,7 +23,8 @@ impl SceneTask {
     /// Returns the scene as commands take it: `asset:Group/name` if it comes with the program.
     #[must_use]
     pub fn address(&self) -> String {
-        format!("{}{}", if self.recording.is_some() { "asset:" } else { "" }, self.name)
+        let is_embedded = library::scene(&self.name).is_some_and(|embedded| embedded == self.xml);
+        format!("{}{}", if is_embedded { "asset:" } else { "" }, self.name)
     }
 
     /// Returns the task's result where no run was judged.
