@@ -19,7 +19,7 @@ pub(super) const SHARED: &str =
     "the program is one file with another submission's (a hard link); the machine can't tell whose it is";
 
 /// The message for a program that is another submission's.
-pub(super) const ANOTHERS: &str = "it is another submission's file under a second name (a hard link)";
+pub(super) const OF_ANOTHER: &str = "it is another submission's file under a second name (a hard link)";
 
 /// Returns whether an open file is another submission's, by the notes from the search for submissions.
 pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {

@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
-    one_file::{ANOTHERS, OneFile, is_anothers},
+    one_file::{OF_ANOTHER, OneFile, is_anothers},
     result::UnusableReason,
     staging::{CopyError, LARGEST_FOLDER, StagedProgram, at, build, copy_program, open_in, unreadable},
     temporary::TemporaryFolder,
@@ -67,7 +67,7 @@ impl Recipe<'_> {
         let path = folder.join(name);
         let why = match open_in(folder, name) {
             Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => {
-                UnusableReason::Unreadable(ANOTHERS.to_owned())
+                UnusableReason::Unreadable(OF_ANOTHER.to_owned())
             }
             Ok(file) => return self.stage_opened(file, &path),
             Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
