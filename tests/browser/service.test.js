@@ -241,6 +241,13 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByLabel("Reason").fill("Nobody should fail this");
   await page.getByRole("button", { name: "Grade all again" }).click();
+  await page.waitForURL(/regrades\/\d+$/);
+  // It can be applied when all are graded, and not before.
+  const [said, applies] = await page.evaluate(() => [
+    document.querySelector("[role=status]").innerText,
+    document.querySelector("form[action$='/apply']") !== null,
+  ]);
+  assert.equal(applies, / 0 still/.test(said), said);
   await page.getByText("0 still to be graded").waitFor();
   assert.match(await page.locator("[role=status]").innerText(), /1 submissions?, 0 still .* 0 grades would change/);
   await accessible(page);
