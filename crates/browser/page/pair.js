@@ -181,8 +181,11 @@ function sketch() {
       shapes.push(
         svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }),
       );
-  points.forEach(([x, y], point) => {
-    const label = svg("text", { x: X(x) + 6, y: Y(y) - 6 });
+  points.forEach(([x, y, dx, dy], point) => {
+    // A name stands beside its arrow.
+    const length = Math.hypot(dx, dy);
+    const [along, up] = length ? [dx / length, dy / length] : [0.7, 0.7];
+    const label = svg("text", { x: X(x) - 14 * up, y: Y(y) - 14 * along + 4, "text-anchor": "middle" });
     label.textContent = `x${point + 1}`;
     shapes.push(label);
   });
