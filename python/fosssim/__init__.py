@@ -27,7 +27,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from importlib.metadata import version as _version
 from pathlib import Path
-from typing import Any, Literal, Sequence, Union
+from typing import Any, Literal, Sequence, Union, get_args
 
 import numpy as np
 from numpy.typing import NDArray
@@ -370,6 +370,8 @@ def check(
 
     A :class:`Trace` knows its scene, and so does the name of a trace that comes with the module.
     """
+    if rules not in get_args(Rules):
+        raise Error(f"rules must be both, fair or parity, not {rules!r}")
     trace = _traced(scene, trace)
     first, (text,) = _check(trace, rules, html=False)
     data = _json.loads(text)

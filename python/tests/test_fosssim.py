@@ -118,6 +118,8 @@ def test_what_is_refused_says_so_in_the_programs_words(tmp_path):
         fosssim.Scene("asset:ContinuousTimeTests/hed-on")
     with pytest.raises(fosssim.Error, match="asset:.*/flawed is there"):
         fosssim.Trace(fosssim.scenes()[0] + "/flawed")
+    with pytest.raises(fosssim.Error, match="rules must be both, fair or parity, not 'strict'"):
+        fosssim.check(FLAWED, rules="strict")
     with pytest.raises(TypeError, match="a pair is Particles"):
         fosssim.detect((1, 2))
     with pytest.raises(fosssim.Error, match=r"broken:1:\d+: "):
