@@ -74,11 +74,10 @@ impl Work for Decomposition<'_> {
         self.moduli.clear();
         self.moduli.resize(n, 0.0);
         for (modulus, column) in self.moduli.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
-            for entry in column {
-                *modulus = larger(*modulus, *entry);
-            }
+            *modulus = largest(simd, column);
         }
-        let may_skip = self.matrix.iter().all(|entry| entry.to_bits() != (-0.0_f64).to_bits());
+        // Without an early end these are vector instructions.
+        let may_skip = self.matrix.iter().fold(true, |may, entry| may & (entry.to_bits() != (-0.0_f64).to_bits()));
         let mut cutoff = 0.0;
         for k in 0..n {
             let pivot = self.pivot(k);
@@ -122,6 +121,8 @@ impl Decomposition<'_> {
     fn exchange(&mut self, k: usize, pivot: &Pivot) {
         let n = self.n;
         self.row_swaps[k] = pivot.row;
+        // The compiler then knows both rows to be in each column.
+        assert!(k < n && pivot.row < n, "the pivot must be in the matrix");
         if pivot.row != k {
             for column in self.matrix.chunks_exact_mut(n) {
                 column.swap(k, pivot.row);
@@ -131,7 +132,10 @@ impl Decomposition<'_> {
             self.column_order.swap(k, pivot.column);
             self.moduli.swap(k, pivot.column);
             let (before, from) = self.matrix.split_at_mut(pivot.column * n);
-            before[k * n..(k + 1) * n].swap_with_slice(&mut from[..n]);
+            // Vector instructions, unlike those of `swap_with_slice`.
+            for (entry, other) in before[k * n..(k + 1) * n].iter_mut().zip(from) {
+                (*entry, *other) = (*other, *entry);
+            }
         }
     }
 
@@ -146,7 +150,7 @@ impl Decomposition<'_> {
         for multiplier in &mut *multipliers {
             *multiplier *= reciprocal;
         }
-        let may_skip = may_skip && multipliers.iter().all(|multiplier| multiplier.is_finite());
+        let may_skip = may_skip & multipliers.iter().fold(true, |may, multiplier| may & multiplier.is_finite());
         let (whole, single) = multipliers.split_at(multipliers.len() / width * width);
         for (column, largest) in rest.chunks_exact_mut(n).zip(&mut self.moduli[k + 1..]) {
             let Some((top, below)) = column[k..].split_first_mut() else { return };
@@ -160,11 +164,7 @@ impl Decomposition<'_> {
                 difference.store(entries);
                 moduli = difference.abs().max(moduli);
             }
-            *largest = moduli.largest();
-            // With some instructions the larger of a number and NaN is NaN.
-            if largest.is_nan() {
-                *largest = in_lanes.iter().fold(0.0, |largest, entry| larger(largest, *entry));
-            }
+            *largest = of_lanes(moduli, in_lanes);
             for (entry, multiplier) in alone.iter_mut().zip(single) {
                 *entry -= *multiplier * *top;
                 *largest = larger(*largest, *entry);
@@ -178,6 +178,24 @@ struct Pivot {
     row: usize,
     column: usize,
     modulus: f64,
+}
+
+/// Returns the largest modulus of a column's entries, NaN ignored.
+#[inline(always)]
+fn largest<S: Simd>(simd: S, entries: &[f64]) -> f64 {
+    let (in_lanes, alone) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
+    let mut moduli = Lanes::all(simd, 0.0);
+    for entries in in_lanes.chunks_exact(Lanes::<S>::COUNT) {
+        moduli = Lanes::load(simd, entries).abs().max(moduli);
+    }
+    alone.iter().fold(of_lanes(moduli, in_lanes), |largest, entry| larger(largest, *entry))
+}
+
+/// Returns the largest of the moduli of entries. With some instructions the larger of a number and NaN is NaN.
+#[inline(always)]
+fn of_lanes<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
+    let largest = moduli.largest();
+    if largest.is_nan() { entries.iter().fold(0.0, |largest, entry| larger(largest, *entry)) } else { largest }
 }
 
 /// Returns the larger of a modulus and that of an entry, unless this is NaN.
