@@ -34,7 +34,9 @@ impl Closer<'_> {
             lines.push(format!("$ fosssim-oracle check {} {}", quote(&name), quote(&trace.to_string_lossy())));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted()).count();
-        if wrong > 1 && wrong == grade.scenes().count() && self.arguments.suite == Assignment::DEFAULT.key() {
+        let is_whole = !self.arguments.failed && self.arguments.scene.is_empty();
+        let is_default = is_whole && self.arguments.suite == Assignment::DEFAULT.key();
+        if wrong > 1 && wrong == grade.scenes().count() && is_default {
             let others = Assignment::ALL.into_iter().filter(|other| *other != Assignment::DEFAULT);
             let others: Vec<&str> = others.map(Assignment::key).collect();
             lines.push(format!("if this program is of another milestone: --suite {}", others.join(", ")));

@@ -27,10 +27,10 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes with the fewest right answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
         for (scene, share) in scenes.iter().take(most) {
-            let percent = 100 * share.accepted / share.run.max(1);
+            let percent = 100.0 * share.accepted as f64 / share.run.max(1) as f64;
             table.row([
                 format!("{} of {}", share.accepted, share.run).into(),
-                format!("{percent} %").into(),
+                format!("{percent:.0} %").into(),
                 one_line(scene).into(),
             ]);
         }

@@ -1,13 +1,18 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
 use super::{
-    super::explain, change_lines, difference, format_points, head_lines, no_points, phrases::NOT_GRADED, points,
-    wrong_first,
+    super::explain,
+    by_cause, change_lines, difference, format_points, head_lines, is_told, no_points,
+    phrases::{NOT_GRADED, list_some},
+    points,
 };
 use crate::annotation::{annotation, annotation_of};
 use crate::foreign::{clean_output, one_line};
-use crate::words;
+use crate::{number::format_count, words};
 use fosssim_findings::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
+
+/// The greatest number of scenes named that have the same cause.
+const NAMED: usize = 3;
 
 /// Returns annotations; the words are escaped as workflow commands want it.
 pub(crate) fn annotations(grades: &[Grade]) -> String {
@@ -85,16 +90,26 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
         if grade.unfit().is_some() {
             continue;
         }
-        let _ = writeln!(text, "| scene | verdict | points | what happened |\n|---|---|---:|---|");
-        for scene in wrong_first(grade.groups.iter()) {
-            let name = cell(&scene.scene);
+        let _ = writeln!(text, "| scenes | verdict | points | what happened |\n|---|---|---:|---|");
+        for alike in by_cause(grade) {
+            let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();
+            let scene = alike[0];
             let words: Vec<String> = std::iter::once(words::summary(scene))
                 .chain(explain::sentence(&scene.settled))
                 .chain(difference(scene))
                 .map(|words| cell(&words))
                 .collect();
-            let words = words.join("; ");
-            let _ = writeln!(text, "| {name} | {} | {} | {words} |", scene.verdict, format_points(scene.points));
+            let reached: Option<f64> = alike.iter().map(|scene| scene.points).sum();
+            let (names, words) = (cell(&list_some(&names, NAMED)), words.join("; "));
+            let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, format_points(reached));
+        }
+        for verdict in [Verdict::Accepted, Verdict::NotRun] {
+            let rest: Vec<_> = grade.scenes().filter(|one| !is_told(one) && one.verdict == verdict).collect();
+            if !rest.is_empty() {
+                let reached: Option<f64> = rest.iter().map(|scene| scene.points).sum();
+                let count = format_count(rest.len() as u64, "scene");
+                let _ = writeln!(text, "| {count} | {verdict} | {} | |", format_points(reached));
+            }
         }
         text.push('\n');
     }

@@ -278,9 +278,10 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     several
 }
 
-/// Renders how many submissions reach which share of the points.
+/// Renders how many submissions that ran reach which share of the points.
 fn bars(grades: &[Grade]) -> String {
-    histogram::html(grades.iter().filter_map(|grade| Some(grade.points? / grade.max_points)))
+    let ran = grades.iter().filter(|grade| !never_ran(grade));
+    histogram::html(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
 
 #[cfg(test)]

@@ -70,6 +70,7 @@ impl GradePage<'_> {
             grade,
             rooms: room::share_out(told.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.unfit().is_none(),
+            is_accepted: told.iter().all(|(scene, _)| scene.verdict.is_accepted()),
             tells_who,
             columns: if tells_who { 6 } else { 5 },
             alike: causes.iter().map(Vec::len).collect(),
@@ -94,6 +95,8 @@ struct GradeContent<'a> {
     /// The number of scenes of each cause.
     alike: Vec<usize>,
     has_scenes: bool,
+    /// Whether the rule books differ in all scenes that have something to tell, and nothing is wrong.
+    is_accepted: bool,
     /// Whether the table of groups says who sees them; its columns.
     tells_who: bool,
     columns: usize,

@@ -23,8 +23,8 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
     let words: Vec<String> = counts.iter().enumerate().map(words).collect();
     let mut svg = format!(
         "<svg class=\"fp\" viewBox=\"0 0 340 180\" width=\"340\" height=\"180\" role=\"img\" aria-label=\"Points of \
-         the class: {}\"><title>Points of the class</title>\n<text class=\"ft\" x=\"10\" y=\"14\">students by points, \
-         in percent of all</text>\n",
+         the class: {}\"><title>Points of the class</title>\n<text class=\"ft\" x=\"10\" y=\"14\">those that ran, by \
+         percent of all points</text>\n",
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {

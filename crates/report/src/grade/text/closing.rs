@@ -12,7 +12,7 @@ use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
 /// The number of groups that are listed where there are at least two more; those that are not accepted come first.
-const GROUPS: usize = 8;
+const GROUPS: usize = 12;
 
 /// Renders the closing lines below the verdict. With `alone` there is nothing else above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {

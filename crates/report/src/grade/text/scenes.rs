@@ -13,6 +13,10 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
+/// The greatest number of causes that are described with an example. The others have a sentence, unless every scene is
+/// shown.
+const DESCRIBED: usize = 3;
+
 /// The greatest number of scenes named that end the same way.
 const NAMED: usize = 3;
 
@@ -27,7 +31,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let width = names.max().unwrap_or(0);
     let scenes = Scenes { options, width, by_cause: by_cause(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
-    groups.map(|group| scenes.group(group)).collect()
+    let mut text: String = groups.map(|group| scenes.group(group)).collect();
+    if scenes.by_cause.len() > DESCRIBED && options.shown < TextDetail::All {
+        text += "\nExamples of all causes: -v\n";
+    }
+    text
 }
 
 struct Scenes<'a, 'b> {
@@ -80,6 +88,12 @@ impl<'a> Scenes<'a, '_> {
         self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
     }
 
+    /// Returns whether a scene shows one of the causes that are described with an example.
+    fn is_described(&self, scene: &SceneGrade) -> bool {
+        let mut causes = self.by_cause.iter().take(DESCRIBED);
+        self.options.shown == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
+    }
+
     fn row(&self, scene: &SceneGrade) -> String {
         let (name, style) = (one_line(&scene.scene), self.options.style);
         let code = style.paint(verdict_look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
@@ -93,10 +107,13 @@ impl<'a> Scenes<'a, '_> {
             lines.push(one_line(&words::summary(scene)));
         }
         lines.extend(difference(scene));
-        if scene.verdict != Verdict::Unwritten {
-            lines.extend(words::details(scene).iter().map(|line| one_line(line)));
+        if self.is_described(scene) {
+            let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
+            let likely = explain::lines(&scene.settled, self.options.style);
+            lines.extend(details.iter().chain(&likely).map(|line| one_line(line)));
+        } else {
+            lines.extend(explain::sentence(&scene.settled).map(|sentence| one_line(&sentence)));
         }
-        lines.extend(explain::lines(&scene.settled, self.options.style).iter().map(|line| one_line(line)));
         if let [first, alike @ ..] = self.alike_scenes(scene)
             && first.scene == scene.scene
             && !alike.is_empty()

@@ -104,27 +104,28 @@ pub(crate) fn known_sentence(key: &str) -> Option<String> {
 
 /// Returns the stages that are not written yet, in a few words each.
 fn describe_unfinished(keys: &[String]) -> String {
-    let stages: Vec<String> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
-    stages.join(", ")
-}
-
-/// Returns a stage of which nothing is there.
-fn empty_stage(row: &Row) -> String {
-    let name = match row.mistake {
-        Mistake::Step(StepMistake::Edit(edit)) => {
-            return edit.term.row().subject[..1].to_lowercase() + &edit.term.row().subject[1..];
+    let mut stages: Vec<String> = Vec::new();
+    let mut detections: [Vec<&str>; 2] = Default::default();
+    for row in keys.iter().filter_map(|key| find(key)) {
+        match row.mistake {
+            Mistake::Step(StepMistake::Edit(edit)) => {
+                stages.push(edit.term.row().subject[..1].to_lowercase() + &edit.term.row().subject[1..]);
+            }
+            Mistake::ParticleParticleEmpty => detections[0].push("particle-particle"),
+            Mistake::ParticleEdgeEmpty => detections[0].push("particle-edge"),
+            Mistake::HalfPlaneEmpty => detections[0].push("particle-half-plane"),
+            Mistake::ParticleParticleZero => detections[1].push("particle-particle"),
+            Mistake::ParticleEdgeZero => detections[1].push("particle-edge"),
+            Mistake::HalfPlaneZero => detections[1].push("particle-half-plane"),
+            Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => stages.push("the impulse loop".to_owned()),
+            Mistake::GeometricEmpty => stages.push("the geometric part".to_owned()),
+            _ => stages.push("the rigid failsafe".to_owned()),
         }
-        Mistake::ParticleParticleEmpty => "the particle-particle detection, which logs nothing",
-        Mistake::ParticleEdgeEmpty => "the particle-edge detection, which logs nothing",
-        Mistake::HalfPlaneEmpty => "the particle-half-plane detection, which logs nothing",
-        Mistake::ParticleParticleZero => "the particle-particle detection, whose coefficients are all zero",
-        Mistake::ParticleEdgeZero => "the particle-edge detection, whose coefficients are all zero",
-        Mistake::HalfPlaneZero => "the particle-half-plane detection, whose coefficients are all zero",
-        Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => "the impulse loop",
-        Mistake::GeometricEmpty => "the geometric part",
-        _ => "the rigid failsafe",
-    };
-    name.to_owned()
+    }
+    let reasons = detections.iter().zip(["it logs nothing", "all coefficients are zero"]);
+    let detections = reasons.filter(|(names, _)| !names.is_empty());
+    let detections = detections.map(|(names, why)| format!("{} detection ({why})", names.join(", ")));
+    detections.chain(stages).collect::<Vec<_>>().join("; ")
 }
 
 /// Returns the sentence for a mistake in a step without collisions: the row's name is its subject.
