@@ -164,7 +164,7 @@ impl Decomposition<'_> {
                 difference.store(entries);
                 moduli = difference.abs().max(moduli);
             }
-            *largest = of_lanes(moduli, in_lanes);
+            *largest = find_largest(moduli, in_lanes);
             for (entry, multiplier) in alone.iter_mut().zip(single) {
                 *entry -= *multiplier * *top;
                 *largest = larger(*largest, *entry);
@@ -188,12 +188,12 @@ fn largest<S: Simd>(simd: S, entries: &[f64]) -> f64 {
     for entries in in_lanes.chunks_exact(Lanes::<S>::COUNT) {
         moduli = Lanes::load(simd, entries).abs().max(moduli);
     }
-    alone.iter().fold(of_lanes(moduli, in_lanes), |largest, entry| larger(largest, *entry))
+    alone.iter().fold(find_largest(moduli, in_lanes), |largest, entry| larger(largest, *entry))
 }
 
 /// Returns the largest of the moduli of entries. With some instructions the larger of a number and NaN is NaN.
 #[inline(always)]
-fn of_lanes<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
+fn find_largest<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
     let largest = moduli.largest();
     if largest.is_nan() { entries.iter().fold(0.0, |largest, entry| larger(largest, *entry)) } else { largest }
 }

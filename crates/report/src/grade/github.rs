@@ -8,7 +8,7 @@ use super::{
 use crate::annotation::{annotation, annotation_of};
 use crate::foreign::{clean_output, one_line};
 use crate::{number::format_count, words};
-use fosssim_findings::{Grade, PassedOver, Verdict};
+use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use std::fmt::Write;
 
 /// The greatest number of scenes named that have the same cause.
@@ -91,6 +91,7 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
             continue;
         }
         let _ = writeln!(text, "| scenes | verdict | points | what happened |\n|---|---|---:|---|");
+        let sum = |scenes: &[&SceneGrade]| format_points(scenes.iter().map(|scene| scene.points).sum());
         for alike in by_cause(grade) {
             let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();
             let scene = alike[0];
@@ -99,16 +100,14 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
                 .chain(difference(scene))
                 .map(|words| cell(&words))
                 .collect();
-            let reached: Option<f64> = alike.iter().map(|scene| scene.points).sum();
             let (names, words) = (cell(&list_some(&names, NAMED)), words.join("; "));
-            let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, format_points(reached));
+            let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, sum(&alike));
         }
         for verdict in [Verdict::Accepted, Verdict::NotRun] {
             let rest: Vec<_> = grade.scenes().filter(|one| !is_told(one) && one.verdict == verdict).collect();
             if !rest.is_empty() {
-                let reached: Option<f64> = rest.iter().map(|scene| scene.points).sum();
                 let count = format_count(rest.len() as u64, "scene");
-                let _ = writeln!(text, "| {count} | {verdict} | {} | |", format_points(reached));
+                let _ = writeln!(text, "| {count} | {verdict} | {} | |", sum(&rest));
             }
         }
         text.push('\n');

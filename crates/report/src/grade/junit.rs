@@ -1,5 +1,5 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, wrong_first};
+use super::{super::explain, difference, head_lines, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, plain};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
@@ -20,7 +20,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             for (number, line) in head_lines(grade).iter().enumerate().filter(|_| grade.unfit().is_none()) {
                 suite.add_property(quick_junit::Property::new(format!("likely_mistake.{number}"), plain(line)));
             }
-            for scene in wrong_first(std::iter::once(group)) {
+            for scene in &group.scenes {
                 // A test case has no place of its own for anything but its result and the program's output.
                 if let Some(words) = difference(scene) {
                     let name = format!("rules_differ.{}", plain(&scene.scene));

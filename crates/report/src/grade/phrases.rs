@@ -1,6 +1,6 @@
 //! The sentences about a grade that several formats have in common.
 use crate::{foreign::one_line, number::format_count, words};
-use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, Verdict};
 pub use fosssim_mistakes::together::likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
 
@@ -51,13 +51,6 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
         Verdict::Unwritten => "see above",
         _ => "not run, see above",
     }
-}
-
-/// Returns the scenes of some groups, those that are not accepted first.
-pub(super) fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> Vec<&'a SceneGrade> {
-    let mut scenes: Vec<&SceneGrade> = groups.flat_map(|group| &group.scenes).collect();
-    scenes.sort_by_key(|scene| scene.verdict.is_accepted());
-    scenes
 }
 
 /// Returns the sentence about a scene that the two rule books judge differently.
