@@ -272,7 +272,7 @@ pub(super) struct ShrinkArguments {
     #[arg(long, value_name = "N", default_value_t = 2_000)]
     pub(super) runs: u32,
     /// The most processor time for one cause, in seconds.
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 10)]
     pub(super) seconds: u32,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]

@@ -156,7 +156,7 @@ pub(super) fn describe_for_grade(
 
 /// Returns the report on a smallest scene, and its card.
 fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
-    let ShrunkScene { reason, origin, small: SmallScene { scene, step, runs, is_minimal }, seen, .. } = small;
+    let ShrunkScene { reason, origin, small: SmallScene { scene, step, is_minimal }, seen, runs } = small;
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
     let note =
         note.map(|note| if scene.particles.is_empty() { format!("{note}; it needs no body for that") } else { note });

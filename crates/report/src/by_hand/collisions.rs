@@ -213,20 +213,18 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
     let rate = 1.0 / members().map(mass).sum::<f64>();
     let center = rate * members().map(|particle| mass(particle) * at(start, particle)).sum::<Vec2>();
     let motion = rate * members().map(|particle| mass(particle) * shift(particle)).sum::<Vec2>();
-    let (mut momentum, mut inertia, mut rows) = (0.0, 0.0, Vec::new());
-    for particle in members() {
-        let (m, s, rest) = (mass(particle), at(start, particle) - center, shift(particle) - motion);
-        let (angular, inertial) = (m * s.perp(&rest), m * s.dot(&s));
-        (momentum, inertia) = (momentum + angular, inertia + inertial);
-        rows.push([particle.to_string(), short(m), vector(s), vector(rest), short(angular), short(inertial)]);
-    }
-    let heading = ["particle", "m", "s = xs - x_cm", "dx - dx_cm", "m s x (dx - dx_cm)", "m |s|^2"];
+    let sum = |of: &dyn Fn(usize) -> f64| members().map(|particle| mass(particle) * of(particle)).sum::<f64>();
+    let s = |particle: usize| at(start, particle) - center;
+    let momentum = sum(&|particle| s(particle).perp(&(shift(particle) - motion)));
+    let inertia = sum(&|particle| s(particle).dot(&s(particle)));
+    let rows =
+        members().map(|index| [index.to_string(), short(mass(index)), vector(s(index)), vector(shift(index) - motion)]);
     format!(
-        "  x_cm = {}, dx_cm = {}\n{}  L = {}, I = {}, omega = L / I = {}\n  \
+        "  x_cm = {}, dx_cm = {}\n{}  L = sum of m s x (dx - dx_cm) = {}, I = sum of m |s|^2 = {}, omega = L / I = {}\n  \
          x = x_cm + dx_cm + cos(omega) s + sin(omega) (-s_y, s_x), v = (x - xs) / h\n",
         vector(center),
         vector(motion),
-        table(heading, rows),
+        table(["particle", "m", "s = xs - x_cm", "dx - dx_cm"], rows),
         short(momentum),
         short(inertia),
         short(momentum / inertia)
