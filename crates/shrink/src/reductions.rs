@@ -12,14 +12,14 @@ pub(crate) type Reduction = fn(&Scene, Assignment, usize) -> Option<Vec<Scene>>;
 /// All kinds, in the order in which they are tried.
 pub(crate) const REDUCTIONS: [Reduction; 4] = [remove_parts, simplify, move_and_round, round_number];
 
-/// Removes all parts, halves of them, then quarters, down to single ones. The parts are bodies, edges, half-planes and
-/// forces.
+/// Removes all parts but the first body, halves of them, then quarters, down to single ones. The parts are bodies,
+/// edges, half-planes and forces.
 fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let count = scene.particles.len() + scene.edges.len() + scene.half_planes.len() + scene.forces.len();
-    let lengths = std::iter::successors(Some(count), |length| Some(length / 2)).take_while(|length| *length > 0);
+    let lengths = std::iter::successors(Some(count / 2), |length| Some(length / 2)).take_while(|length| *length > 0);
     // From the end, so that the rest keeps its numbers as long as possible.
     let ranges = lengths.flat_map(|length| (0..count).step_by(length).rev().map(move |start| start..start + length));
-    ranges.skip(index).map(|range| vec![without(scene, &range)]).next()
+    std::iter::once(1..count).chain(ranges).skip(index).map(|range| vec![without(scene, &range)]).next()
 }
 
 /// Returns a scene without these parts and all that depends on them: edges with their ends, forces with their bodies.

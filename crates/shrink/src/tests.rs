@@ -1,4 +1,6 @@
 use super::*;
+use fosssim_findings::Stop;
+use fosssim_judge::replay::{Options, judge};
 use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
@@ -90,4 +92,30 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     assert!(reason(CpuLimit).holds(scene, &seen(WallLimit), false));
     assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit), false));
     assert_eq!(WrongReason::first(scene, &Observation::from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
+}
+
+/// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, and the
+/// trace is whole.
+#[test]
+fn a_judgement_that_stops_is_no_broken_trace() {
+    let posts = |y: f64, fixed: u8| {
+        let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
+        let text = format!(
+            r#"<scene><duration time="2"/><integrator type="symplectic-euler" dt="0.1"/>
+            <collision type="hybrid" COR="1" maxiters="2000000000" k="0" thickness="0.01"/>
+            <particle m="1" px="0" py="{y}" vx="0" vy="0" fixed="{fixed}" radius="0.2"/>{}{}
+            <simplegravity fx="10" fy="0"/></scene>"#,
+            post(-0.25),
+            post(0.25)
+        );
+        scene::read("posts", text.as_bytes()).expect("a scene").scene
+    };
+    let trace = |scene: &Scene| run(scene, Student::default()).trace;
+    let (far, between) = (posts(100.0, 0), posts(0.0, 1));
+    let initial = trace(&Scene { duration: 0.0, ..far.clone() }).len();
+    let trace = [&trace(&far)[..initial], &trace(&between)[initial..]].concat();
+    let outcome = judge(&far, &trace[..], &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
+    assert!(matches!(outcome.stop, Some(Stop::Step(_))), "{:?}", outcome.stop);
+    let reason = WrongReason::first(&far, &Observation::from_trace(trace));
+    assert!(reason.is_some() && reason != Some(WrongReason::BrokenTrace), "{reason:?}");
 }

@@ -158,8 +158,6 @@ pub(super) fn describe_for_grade(
 fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
     let ShrunkScene { reason, origin, small: SmallScene { scene, step, is_minimal }, seen, runs } = small;
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
-    let note =
-        note.map(|note| if scene.particles.is_empty() { format!("{note}; it needs no body for that") } else { note });
     let names = ("small.xml".to_owned(), program.to_owned());
     let (mut case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
     // A card would show two equal motions if the program does not end well and its steps are right.
@@ -211,7 +209,10 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
             let example = own.and_then(|own| own.example);
             // It lists the stages that are not written yet.
             let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
-            Explanation { example, reproduced: 0, samples: 0, same_as, ..cause.clone() }
+            // Many other formulas agree with a single sample of wrong polynomials.
+            let is_fitted = cause.samples < 2 && matches!(cause.about, About::Polynomials { .. });
+            let details = if is_fitted { Vec::new() } else { cause.details.clone() };
+            Explanation { example, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
         }
     };
     case.explanations.splice(0..0, cut(hints, vec![lead]));
