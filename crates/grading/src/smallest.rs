@@ -1,10 +1,5 @@
 //! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
-use super::{
-    config::{Hints, RunLimits},
-    execute::Runner,
-    located::FailureKind,
-    task::SceneTask,
-};
+use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::SmallestScene;
 use fosssim_judge::{Stop, kept::LONGEST, replay::Options};
@@ -25,7 +20,7 @@ pub const MOST_BODIES: usize = 400;
 const MOST_UNNAMED: usize = 2;
 
 /// The limits where the smallest scenes are only the end of a report.
-pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
+pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), step: None };
 
 /// The time on the processor and on the clock of a run.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
@@ -37,26 +32,22 @@ pub fn impatient(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
 }
 
-/// Describes a smallest scene, with these hints for its students.
-pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene, Hints) -> SmallestScene + Sync + 'a;
+/// Describes a smallest scene for staff.
+pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene) -> SmallestScene + Sync + 'a;
 
-/// The most that may be spent on one cause.
+/// The most that may be spent on one cause, and where it begins.
 #[derive(Debug, Clone, Copy)]
 pub struct ShrinkLimits {
     /// Runs of the program.
     pub runs: u32,
     /// The processor time of these runs, and of this process meanwhile.
     pub time: Duration,
+    /// The wrong step with which the search begins; by default the first ones.
+    pub step: Option<u32>,
 }
 
-/// A cause, and the scenes on which a program is wrong because of it.
-#[derive(Debug, Clone)]
-pub struct WrongScenes<'a> {
-    /// The reason, if it is known before a run is judged.
-    pub reason: Option<WrongReason>,
-    /// The scenes.
-    pub scenes: Vec<&'a SceneTask>,
-}
+/// A cause, if it is known before a run is judged, and the scenes on which a program is wrong because of it.
+pub type Cause<'a> = (Option<WrongReason>, Vec<&'a SceneTask>);
 
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
@@ -87,13 +78,13 @@ pub struct WrongScene<'a> {
 /// Returns the causes of wrong scenes: the likely mistakes, the ways in which the program does not end well, and a few
 /// of the scenes that nothing explains.
 #[must_use]
-pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<WrongScenes<'a>> {
+pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
     let likely =
         likely.iter().filter(|one| one.is_vote() || one.is_not_finite()).map(|one| match one.is_not_finite() {
             true => WrongReason::NotFinite,
             false => WrongReason::Mistake(one.clone().into()),
         });
-    let (mut all, mut left): (Vec<WrongScenes<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
+    let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
     for reason in likely.chain(wrong.iter().filter_map(|one| WrongReason::from_end(one.ended))) {
         let is_of = |one: &&WrongScene<'a>| match (&reason, WrongReason::from_end(one.ended)) {
             (WrongReason::Mistake(mistake), None) => is_named_in(mistake, one.explanations),
@@ -102,11 +93,11 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
         };
         left.retain(|one| !is_of(one));
         let scenes: Vec<&SceneTask> = wrong.iter().filter(is_of).map(|one| one.task).collect();
-        if !scenes.is_empty() && all.iter().all(|cause| cause.reason.as_ref() != Some(&reason)) {
-            all.push(WrongScenes { reason: Some(reason), scenes });
+        if !scenes.is_empty() && all.iter().all(|(known, _)| known.as_ref() != Some(&reason)) {
+            all.push((Some(reason), scenes));
         }
     }
-    all.extend(left.iter().take(MOST_UNNAMED).map(|one| WrongScenes { reason: None, scenes: vec![one.task] }));
+    all.extend(left.iter().take(MOST_UNNAMED).map(|one| (None, vec![one.task])));
     all
 }
 
@@ -120,8 +111,6 @@ pub struct Shrinker<'a> {
     pub assignment: Assignment,
     /// The most that may be spent on one cause.
     pub limits: ShrinkLimits,
-    /// The wrong step with which the search begins; by default the first ones.
-    pub step: Option<u32>,
 }
 
 impl Shrinker<'_> {
@@ -129,8 +118,7 @@ impl Shrinker<'_> {
     ///
     /// # Errors
     /// Faults of ours or of the machine, in words.
-    pub fn smallest(&self, cause: &WrongScenes<'_>) -> Result<Option<ShrunkScene>, String> {
-        let mut tasks = cause.scenes.clone();
+    pub fn smallest(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let mut spent = Duration::ZERO;
@@ -141,24 +129,19 @@ impl Shrinker<'_> {
             spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
         };
         for task in tasks.into_iter().take(MOST_SCENES) {
-            if is_over(spent) {
-                break;
-            }
             let seen = self.observe(&task.scene, &mut spent)?;
-            let Some(reason) = cause.reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
+            let Some(reason) = reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
                 continue;
             };
-            let steps = self.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
+            let steps = self.limits.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let (mut runs, mut fault, mut held) = (0, Ok(()), None);
             let mut holds = |scene: &Scene, is_alone: bool| {
                 if runs == self.limits.runs || is_over(spent) {
                     return None;
                 }
                 runs += 1;
-                let seen = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok()?;
-                if self.runner.cancellation.is_cancelled() {
-                    return None;
-                }
+                let seen = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
+                let seen = seen.filter(|_| !self.runner.cancellation.is_cancelled())?;
                 let holds = reason.holds(scene, &seen, is_alone);
                 held = if holds { Some(seen) } else { held.take() };
                 Some(holds)

@@ -13,7 +13,7 @@ use collisions::CollisionWalk;
 use fosssim_findings::PairWords;
 use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Integrator, Scene},
-    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steer, Steering, gradients, pairs},
+    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steer, Steering, gradients},
 };
 use fosssim_num::{
     linear,
@@ -25,19 +25,14 @@ use std::collections::BTreeSet;
 const MOST_ROWS: usize = 8;
 
 /// Renders a scene's first step, which is the `step`-th of a run: forces and integrator where there are forces, then
-/// passes and responses, with all of one pair's detection if one is named. `None` if the step has no result, or nothing
-/// to compute.
+/// passes and responses, with all of one pair's detection if one is named. `None` if the step has no result.
 #[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
     Simulation::new(scene, RootSearch::WhereNeeded).step(&mut walk).ok()?;
-    let text = match (integration(scene, step), walk.finish()) {
-        (Some(forces), Some(collisions)) => format!("{forces}\n{collisions}"),
-        (None, None) if pair.is_none() => return first_step(scene, Some((pairs(scene).iter().next()?, None)), step),
-        (forces, collisions) => forces.or(collisions)?,
-    };
+    let parts: Vec<String> = [integration(scene, step), walk.finish()].into_iter().flatten().collect();
     let before = (step > 1).then(|| format!("Before step {step}\n{}\n", states(&State::for_scene(scene))));
-    Some(before.unwrap_or_default() + &text)
+    Some(before.unwrap_or_default() + &parts.join("\n"))
 }
 
 /// Renders the velocity and the position of each particle.

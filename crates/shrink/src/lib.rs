@@ -8,6 +8,7 @@
 //! It runs no program and reads no clock: its caller does, and decides with each answer whether to continue.
 //!
 //! ```
+//! use fosssim_ended::RunEnd;
 //! use fosssim_student::{self as student, Mistake, Student};
 //! use fosssim_model::{assignments::Assignment, scene};
 //! use fosssim_shrink::{Observation, WrongReason, beginnings, reduce};
@@ -20,7 +21,10 @@
 //! </scene>"#;
 //! let scene = scene::read("two balls", text)?.scene;
 //! let row = student::find("gravity-no-mass").expect("a row");
-//! let run = |scene: &_| Observation::from_trace(student::trace(scene, Student::new(Some(row.mistake))).unwrap());
+//! let run = |scene: &_| {
+//!     let trace = student::trace(scene, Student::new(Some(row.mistake))).expect("a whole trace");
+//!     Observation { trace, ended: RunEnd::Exited(0) }
+//! };
 //!
 //! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
 //! let begin = beginnings(&scene, &run(&scene).trace, &[1]);

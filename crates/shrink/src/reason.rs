@@ -21,14 +21,6 @@ pub struct Observation {
     pub ended: RunEnd,
 }
 
-impl Observation {
-    /// Returns the observation of a program that ended well.
-    #[must_use]
-    pub const fn from_trace(trace: Vec<u8>) -> Self {
-        Self { trace, ended: RunEnd::Exited(0) }
-    }
-}
-
 /// The reason why a program is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WrongReason {
@@ -76,7 +68,10 @@ impl WrongReason {
         match (self, detail) {
             (Self::Mistake(_), Some(FindingDetail::BeyondReach { .. })) => false,
             (Self::Mistake(mistake), Some(_)) => {
-                let keys = known_keys(mistake);
+                // The rows of the catalogue that it names; none if it is no row itself, nor a stage without code.
+                let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
+                let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
+                let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
                 // Most attempts end here, long before every mistake of the catalogue was tried.
                 if is_alone && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
                     return false;
@@ -89,14 +84,6 @@ impl WrongReason {
             (_, detail) => fault == *self && detail.is_none_or(is_plain),
         }
     }
-}
-
-/// Returns the rows of the catalogue that a mistake names, its own first; none where it is no row itself, nor a stage
-/// that is not written yet.
-fn known_keys(mistake: &Explanation) -> Vec<&str> {
-    let keys = std::iter::once(&mistake.key).chain(&mistake.same_as);
-    let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
-    keys.map(String::as_str).filter(|key| is_named && find(key).is_some()).collect()
 }
 
 /// Returns the reason that needs no explanation, and the first finding of a trace that can be read; `None` if nothing

@@ -1,7 +1,7 @@
 //! The search: attempts in a fixed order, until a whole pass of them helps nothing.
 use crate::{
     reductions::REDUCTIONS,
-    size::{is_clear, size},
+    size::{Size, is_clear, size},
 };
 use fosssim_model::{
     assignments::Assignment,
@@ -53,7 +53,7 @@ struct Search<'a, 'b> {
     is_alone: bool,
     holds: &'a mut Holds<'b>,
     scene: Scene,
-    size: [f64; 8],
+    size: Size,
     /// The number of warnings, and of parts that programs of the assignment do not know.
     oddities: usize,
     /// Whether no decision depends on round-off.

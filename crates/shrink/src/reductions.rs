@@ -60,9 +60,8 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
     let mut all = Vec::new();
     if let Collision::Hybrid { restitution, stiffness, thickness, .. } = scene.collision {
         all.push(with(Collision::ContinuousTime { restitution }));
-        all.extend(
-            [0, 1].map(|most| with(Collision::Hybrid { restitution, stiffness, thickness, max_iterations: most })),
-        );
+        let few = [0, 1].map(|max_iterations| Collision::Hybrid { restitution, stiffness, thickness, max_iterations });
+        all.extend(few.map(with));
     }
     all.push(with(Collision::None));
     let plain = [Integrator::ExplicitEuler, Integrator::SymplecticEuler, Integrator::LinearizedImplicitEuler];

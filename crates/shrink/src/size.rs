@@ -82,11 +82,14 @@ pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
     }
 }
 
-/// Measures a scene. The first number that differs decides which of two scenes is smaller: steps; bodies; edges and
-/// half-planes; forces; features that are not the plainest; collisions that the reference detects; digits of all
-/// numbers that are not plain, such as a mass of 1, and those of the result as far as they are more than anybody
-/// computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
-pub(crate) fn size(scene: &Scene) -> [f64; 8] {
+/// The size of a scene: the first number that differs decides which of two is smaller.
+pub(crate) type Size = ([usize; 7], f64);
+
+/// Measures a scene: steps; bodies; edges and half-planes; forces; features that are not the plainest; collisions that
+/// the reference detects; digits of all numbers that are not plain, such as a mass of 1, and those of the result as far
+/// as they are more than anybody computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
+pub(crate) fn size(scene: &Scene) -> Size {
+    use Integrator::{ExplicitEuler, ForwardBackwardEuler, ImplicitEuler, LinearizedImplicitEuler, SymplecticEuler};
     let mut copy = scene.clone();
     let not_plain = numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.plain());
     let (mut written, mut magnitude) = (0, 0.0);
@@ -94,13 +97,8 @@ pub(crate) fn size(scene: &Scene) -> [f64; 8] {
         written += digits(*value);
         magnitude += value.abs() + if *value < 0.0 { 0.01 } else { 0.0 };
     }
-    let effort = match scene.integrator {
-        Integrator::ExplicitEuler => 0,
-        Integrator::SymplecticEuler => 1,
-        Integrator::ForwardBackwardEuler => 2,
-        Integrator::LinearizedImplicitEuler => 3,
-        Integrator::ImplicitEuler => 4,
-    };
+    let efforts = [ExplicitEuler, SymplecticEuler, ForwardBackwardEuler, LinearizedImplicitEuler, ImplicitEuler];
+    let effort = efforts.iter().position(|one| *one == scene.integrator).unwrap_or_default();
     let handling = match scene.collision {
         Collision::None => 0,
         Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
@@ -111,12 +109,9 @@ pub(crate) fn size(scene: &Scene) -> [f64; 8] {
     let (hits, end) = if is_small { run(scene).unwrap_or_default() } else { Default::default() };
     let hits = hits.iter().filter(|(_, collides)| *collides).count();
     let long: usize = end.iter().map(|value| digits(*value).saturating_sub(HANDY)).sum();
-    let (steps, objects) = (scene.steps() as usize, scene.edges.len() + scene.half_planes.len());
-    let features = effort + handling + fixed;
-    let [steps, bodies, objects, forces, features, hits, digits] =
-        [steps, scene.particles.len(), objects, scene.forces.len(), features, hits, written + long]
-            .map(|count| count as f64);
-    [steps, bodies, objects, forces, features, hits, digits, magnitude]
+    let (steps, bodies) = (scene.steps() as usize, scene.particles.len());
+    let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
+    ([steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
 }
 
 /// Returns the digits of a number as it is written, without the zero before its point: 2 for 0.05, for 1.5 and for 10.

@@ -7,9 +7,14 @@ use fosssim_model::{
 };
 use fosssim_student::{Student, assignments::probe_scenes, find, trace_within};
 
+/// Returns the observation of a program that ended well.
+fn from_trace(trace: Vec<u8>) -> Observation {
+    Observation { trace, ended: fosssim_ended::RunEnd::Exited(0) }
+}
+
 /// Returns what the simulator with mistakes makes of a scene.
 fn run(scene: &Scene, student: Student) -> Observation {
-    Observation::from_trace(trace_within(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
+    from_trace(trace_within(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
 }
 
 /// Returns the most significant digits that a number of the scene has: 1 for 0.05 and for 10, 2 for 1.5.
@@ -91,7 +96,7 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     assert!(!reason(Signalled(11)).holds(scene, &seen(Signalled(8)), false));
     assert!(reason(CpuLimit).holds(scene, &seen(WallLimit), false));
     assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit), false));
-    assert_eq!(WrongReason::first(scene, &Observation::from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
+    assert_eq!(WrongReason::first(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
 }
 
 /// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, and the
@@ -116,6 +121,6 @@ fn a_judgement_that_stops_is_no_broken_trace() {
     let trace = [&trace(&far)[..initial], &trace(&between)[initial..]].concat();
     let outcome = judge(&far, &trace[..], &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
     assert!(matches!(outcome.stop, Some(Stop::Step(_))), "{:?}", outcome.stop);
-    let reason = WrongReason::first(&far, &Observation::from_trace(trace));
+    let reason = WrongReason::first(&far, &from_trace(trace));
     assert!(reason.is_some() && reason != Some(WrongReason::BrokenTrace), "{reason:?}");
 }

@@ -253,7 +253,7 @@ Example:
   fosssim-oracle shrink ./FOSSSim --suite t2m1 --format html > small.html
 
 The program runs in the sandbox. Without a scene there is one smallest scene for each cause; further ones go to \
-small-2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
+small.2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
 pub(super) struct ShrinkArguments {
     /// The program to run.
     pub(super) program: PathBuf,
