@@ -86,6 +86,16 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     assert!(reason.holds(&some.scene, &run(&some.scene, student), false));
 }
 
+/// A program that never ends shows it on any scene: one body is tried before all else.
+#[test]
+fn one_body_is_tried_first() {
+    let scene = &probe_scenes(Assignment::T2M2)[0].1;
+    let mut runs = 0..2;
+    let mut holds = |_: &Scene, _| runs.next().map(|_| true);
+    let small = reduce(&beginnings(scene, &[], &[1]), Assignment::T2M2, &mut holds).expect("a scene");
+    assert!(scene.particles.len() > 1 && small.scene.particles.len() == 1);
+}
+
 #[test]
 fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     use fosssim_ended::RunEnd::{CpuLimit, MemoryLimit, Signalled, WallLimit};

@@ -173,3 +173,16 @@ fn differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let findings = outcome.fair.as_ref().map(|fair| &fair.findings);
     (check.steps_text(Style::Plain), findings.and_then(|findings| findings.first_divergence))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::diagnose::{Detail, OfPolynomials};
+
+    #[test]
+    fn what_fits_a_single_sample_is_not_shown() {
+        let wrong = Explanation::for_wrong(Vec::new(), OfPolynomials::Nothing);
+        let fitted = |samples| Explanation { samples, details: vec![Detail::Term("x".into())], ..wrong.clone() };
+        assert_eq!([1, 2].map(|samples| lead(&fitted(samples), Vec::new()).details.len()), [0, 1]);
+    }
+}
