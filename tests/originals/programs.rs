@@ -196,7 +196,9 @@ fn smallest_scenes_show_what_they_were_made_for() {
             let group = "[[group]]\nname = \"small\"\nscenes = [\"scene.xml\"]";
             let suite = format!("schema = 1\nname = \"small\"\nmilestone = \"{key}\"\n{group}\n");
             workspace.write("small.toml", suite);
-            let right = class.is_right.iter().filter(|(_, right)| **right);
+            // Its solver needs symmetric matrices: the original rejects it on other scenes (docs/rules/states.md).
+            let is_limited = |name: &str| (class.milestone, name) == (T1M3, "variant-105");
+            let right = class.is_right.iter().filter(|(name, right)| **right && !is_limited(name));
             let right = right.map(|(name, _)| class.program(name).to_string_lossy().into_owned());
             let words = ["grade", "--suite", "small.toml", "--quiet", "--output", "out"].map(str::to_owned);
             let run = workspace.run(words.into_iter().chain(right));

@@ -31,12 +31,8 @@ pub struct SmallestScene {
     pub differs: Option<String>,
     /// The reference's computation of the first wrong step; with full hints only.
     pub by_hand: Option<String>,
-    /// The arguments with which `detect` shows the pair that is wrong; with full hints only.
-    pub detect: Option<String>,
-    /// The scene's card on a page.
+    /// The scene's card on a page; with full hints only.
     pub card: Option<String>,
-    /// The card for students.
-    pub card_for_students: Option<String>,
 }
 
 impl SmallestScene {
@@ -56,9 +52,8 @@ impl SmallestScene {
     /// Cuts the scene down to what hints allow for students, except for its explanations.
     pub fn cut(&mut self, hints: Hints) {
         if hints < Hints::Full {
-            (self.differs, self.by_hand, self.detect) = (None, None, None);
+            (self.differs, self.by_hand, self.card) = (None, None, None);
             self.first = self.first.take().and_then(|first| hints.cut(first));
-            self.card = self.card_for_students.take();
         }
     }
 }

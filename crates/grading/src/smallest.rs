@@ -1,10 +1,5 @@
 //! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
-use super::{
-    config::{Hints, RunLimits},
-    execute::Runner,
-    located::FailureKind,
-    task::SceneTask,
-};
+use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::SmallestScene;
 use fosssim_judge::{Stop, kept::LONGEST, replay::Options};
@@ -14,12 +9,8 @@ use fosssim_model::{
     scene::{self, Scene},
 };
 use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
-use fosssim_shrink::{EndTest, Observation, Reducer, SmallScene, WrongReason, beginnings};
-use std::{
-    cell::{Cell, OnceCell},
-    path::Path,
-    time::Duration,
-};
+use fosssim_shrink::{Observation, SmallScene, WrongReason, beginnings, reduce};
+use std::{path::Path, time::Duration};
 
 /// Scenes that are tried for one cause, the smallest first.
 const MOST_SCENES: usize = 4;
@@ -29,10 +20,7 @@ pub const MOST_BODIES: usize = 400;
 const MOST_UNNAMED: usize = 2;
 
 /// The limits where the smallest scenes are only the end of a report.
-pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
-
-/// The time for a cause that has no name, or a quarter of the limit if that is more.
-const UNNAMED: Duration = Duration::from_secs(5);
+pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), step: None };
 
 /// The time on the processor and on the clock of a run.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
@@ -44,26 +32,22 @@ pub fn impatient(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
 }
 
-/// Describes a smallest scene, with these hints for its students.
-pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene, Hints) -> SmallestScene + Sync + 'a;
+/// Describes a smallest scene for staff.
+pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene) -> SmallestScene + Sync + 'a;
 
-/// The most that may be spent on one cause.
+/// The most that may be spent on one cause, and where it begins.
 #[derive(Debug, Clone, Copy)]
 pub struct ShrinkLimits {
     /// Runs of the program.
     pub runs: u32,
     /// The processor time of these runs, and of this process meanwhile.
     pub time: Duration,
+    /// The wrong step with which the search begins; by default the first ones.
+    pub step: Option<u32>,
 }
 
-/// A cause, and the scenes on which a program is wrong because of it.
-#[derive(Debug, Clone)]
-pub struct WrongScenes<'a> {
-    /// The reason, if it is known before a run is judged.
-    pub reason: Option<WrongReason>,
-    /// The scenes.
-    pub scenes: Vec<&'a SceneTask>,
-}
+/// A cause, if it is known before a run is judged, and the scenes on which a program is wrong because of it.
+pub type Cause<'a> = (Option<WrongReason>, Vec<&'a SceneTask>);
 
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
@@ -76,6 +60,8 @@ pub struct ShrunkScene {
     pub small: SmallScene,
     /// The program's run on the scene.
     pub seen: Observation,
+    /// The number of runs of the program.
+    pub runs: u32,
 }
 
 /// A program's run on a scene on which it is wrong.
@@ -92,38 +78,26 @@ pub struct WrongScene<'a> {
 /// Returns the causes of wrong scenes: the likely mistakes, the ways in which the program does not end well, and a few
 /// of the scenes that nothing explains.
 #[must_use]
-pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<WrongScenes<'a>> {
-    let mut left: Vec<WrongScene<'a>> = wrong.to_vec();
-    let mut all = Vec::new();
-    let mut take = |reason: Option<WrongReason>, is_of: &dyn Fn(&WrongScene<'a>) -> bool| {
-        let scenes: Vec<_> = wrong.iter().filter(|one| is_of(one)).map(|one| one.task).collect();
-        left.retain(|one| !is_of(one));
-        if !scenes.is_empty() {
-            all.push(WrongScenes { reason, scenes });
-        }
-    };
-    for one in likely.iter().filter(|one| one.is_vote() || one.is_not_finite()) {
-        let is_of = |wrong: &WrongScene<'_>| {
-            FailureKind::from_end(wrong.ended).is_none()
-                && match one.is_not_finite() {
-                    true => wrong.explanations.iter().any(Explanation::is_not_finite),
-                    false => is_named_in(one, wrong.explanations),
-                }
+pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
+    let likely =
+        likely.iter().filter(|one| one.is_vote() || one.is_not_finite()).map(|one| match one.is_not_finite() {
+            true => WrongReason::NotFinite,
+            false => WrongReason::Mistake(one.clone().into()),
+        });
+    let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
+    for reason in likely.chain(wrong.iter().filter_map(|one| WrongReason::from_end(one.ended))) {
+        let is_of = |one: &&WrongScene<'a>| match (&reason, WrongReason::from_end(one.ended)) {
+            (WrongReason::Mistake(mistake), None) => is_named_in(mistake, one.explanations),
+            (WrongReason::NotFinite, None) => one.explanations.iter().any(Explanation::is_not_finite),
+            (reason, end) => end.as_ref() == Some(reason),
         };
-        let reason =
-            if one.is_not_finite() { WrongReason::NotFinite } else { WrongReason::Mistake(one.clone().into()) };
-        take(Some(reason), &is_of);
-    }
-    let mut ends: Vec<&RunEnd> = Vec::new();
-    for one in wrong {
-        if FailureKind::from_end(one.ended).is_some() && !ends.contains(&one.ended) {
-            ends.push(one.ended);
+        left.retain(|one| !is_of(one));
+        let scenes: Vec<&SceneTask> = wrong.iter().filter(is_of).map(|one| one.task).collect();
+        if !scenes.is_empty() && all.iter().all(|(known, _)| known.as_ref() != Some(&reason)) {
+            all.push((Some(reason), scenes));
         }
     }
-    for end in ends {
-        take(Some(WrongReason::Ended(end.clone())), &|wrong| wrong.ended == end);
-    }
-    all.extend(left.iter().take(MOST_UNNAMED).map(|one| WrongScenes { reason: None, scenes: vec![one.task] }));
+    all.extend(left.iter().take(MOST_UNNAMED).map(|one| (None, vec![one.task])));
     all
 }
 
@@ -137,8 +111,6 @@ pub struct Shrinker<'a> {
     pub assignment: Assignment,
     /// The most that may be spent on one cause.
     pub limits: ShrinkLimits,
-    /// The wrong step with which the search begins; by default the first ones.
-    pub step: Option<u32>,
 }
 
 impl Shrinker<'_> {
@@ -146,82 +118,49 @@ impl Shrinker<'_> {
     ///
     /// # Errors
     /// Faults of ours or of the machine, in words.
-    pub fn smallest(&self, cause: &WrongScenes<'_>) -> Result<Option<ShrunkScene>, String> {
-        let mut tasks = cause.scenes.clone();
+    pub fn smallest(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
-        let spent = Cell::new(Duration::ZERO);
+        let mut spent = Duration::ZERO;
         // Other threads may grade; their time does not count.
         let begun = processor_time(TimeOf::Thread);
-        let time = || spent.get() + processor_time(TimeOf::Thread).saturating_sub(begun);
+        let is_over = |spent: Duration| {
+            let own = processor_time(TimeOf::Thread).saturating_sub(begun);
+            spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
+        };
         for task in tasks.into_iter().take(MOST_SCENES) {
-            if time() >= self.limits.time || self.runner.cancellation.is_cancelled() {
-                break;
-            }
-            let seen = self.observe(&task.scene, &spent)?;
-            let Some(reason) = cause.reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
+            let seen = self.observe(&task.scene, &mut spent)?;
+            let Some(reason) = reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
                 continue;
             };
-            let steps = self.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
-            let begin = beginnings(&task.scene, &seen.trace, &steps);
-            let all = self.limits.time;
-            let limit = if reason.is_unnamed() { all.min(UNNAMED.max(all / 4)) } else { all };
-            let is_over = || time() >= limit || self.runner.cancellation.is_cancelled();
-            // At best the scene alone distinguishes the mistake from all others.
-            let search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over);
-            let (mut found, mut held) = search(true)?;
-            if found.is_none() {
-                (found, held) = search(false)?;
-            }
-            let Some(small) = found else { continue };
-            let seen = match self.runner.cancellation.is_cancelled() {
-                // No program runs any more: the earlier result must suffice.
-                true => held,
-                false => Some(self.observe(&small.scene, &spent)?),
+            let steps = self.limits.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
+            let (mut runs, mut fault, mut held) = (0, Ok(()), None);
+            let mut holds = |scene: &Scene, is_alone: bool| {
+                if runs == self.limits.runs || is_over(spent) {
+                    return None;
+                }
+                runs += 1;
+                let seen = self.observe(scene, &mut spent).map_err(|words| fault = Err(words)).ok();
+                let seen = seen.filter(|_| !self.runner.cancellation.is_cancelled())?;
+                let holds = reason.holds(scene, &seen, is_alone);
+                held = if holds { Some(seen) } else { held.take() };
+                Some(holds)
             };
-            let Some(seen) = seen else { continue };
-            // A program that does another thing each time shows nothing.
-            if reason.holds(&small.scene, &seen) {
-                return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen }));
+            let small = reduce(&beginnings(&task.scene, &seen.trace, &steps), self.assignment, &mut holds);
+            fault?;
+            if let Some((small, seen)) = small.zip(held) {
+                return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen, runs }));
             }
         }
         Ok(None)
     }
 
-    /// Reduces one of these scenes, and returns it with the program's run on it.
-    fn reduce(
-        &self,
-        (reason, leads): (&WrongReason, bool),
-        begin: Vec<(u32, Scene)>,
-        spent: &Cell<Duration>,
-        is_over: &EndTest<'_>,
-    ) -> Result<(Option<SmallScene>, Option<Observation>), String> {
-        let (fault, held) = (OnceCell::new(), Cell::new(None));
-        let holds = |scene: &Scene| {
-            if is_over() {
-                return None;
-            }
-            let seen = self.observe(scene, spent).map_err(|words| fault.set(words)).ok()?;
-            if self.runner.cancellation.is_cancelled() {
-                return None;
-            }
-            let holds = if leads { reason.leads(scene, &seen) } else { reason.holds(scene, &seen) };
-            if holds {
-                held.set(Some(seen));
-            }
-            Some(holds)
-        };
-        let (assignment, most_runs) = (self.assignment, self.limits.runs);
-        let found = Reducer { reason, assignment, holds: &holds, is_over, most_runs }.reduce(begin);
-        fault.into_inner().map_or(Ok((found, held.into_inner())), Err)
-    }
-
     /// Runs the program on a scene.
-    fn observe(&self, scene: &Scene, spent: &Cell<Duration>) -> Result<Observation, String> {
+    fn observe(&self, scene: &Scene, spent: &mut Duration) -> Result<Observation, String> {
         let xml = scene::write(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
         let (trace, outcome) = self.runner.collect(self.program, &task, LONGEST)?;
-        spent.set(spent.get() + outcome.cpu);
+        *spent += outcome.cpu;
         Ok(Observation { trace, ended: outcome.ended })
     }
 }

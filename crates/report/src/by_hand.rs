@@ -13,7 +13,7 @@ use collisions::CollisionWalk;
 use fosssim_findings::PairWords;
 use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Integrator, Scene},
-    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steer, Steering, gradients, pairs},
+    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steer, Steering, gradients},
 };
 use fosssim_num::{
     linear,
@@ -21,24 +21,18 @@ use fosssim_num::{
 };
 use std::collections::BTreeSet;
 
-/// Matrices with more rows are not printed, nor more of Newton's iterations.
+/// Matrices with more rows are not printed.
 const MOST_ROWS: usize = 8;
-const MOST_ITERATIONS: usize = 3;
 
 /// Renders a scene's first step, which is the `step`-th of a run: forces and integrator where there are forces, then
-/// passes and responses, with all of one pair's detection if one is named. `None` if the step has no result, or nothing
-/// to compute.
+/// passes and responses, with all of one pair's detection if one is named. `None` if the step has no result.
 #[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
     Simulation::new(scene, RootSearch::WhereNeeded).step(&mut walk).ok()?;
-    let text = match (integration(scene, step), walk.finish()) {
-        (Some(forces), Some(collisions)) => format!("{forces}\n{collisions}"),
-        (None, None) if pair.is_none() => return first_step(scene, Some((pairs(scene).iter().next()?, None)), step),
-        (forces, collisions) => forces.or(collisions)?,
-    };
+    let parts: Vec<String> = [integration(scene, step), walk.finish()].into_iter().flatten().collect();
     let before = (step > 1).then(|| format!("Before step {step}\n{}\n", states(&State::for_scene(scene))));
-    Some(before.unwrap_or_default() + &text)
+    Some(before.unwrap_or_default() + &parts.join("\n"))
 }
 
 /// Renders the velocity and the position of each particle.
@@ -62,47 +56,46 @@ fn integration(scene: &Scene, step: u32) -> Option<String> {
     };
     let scene = &Scene { collision, ..scene.clone() };
     let (State { positions: x, velocities: v }, h) = (State::for_scene(scene), scene.time_step);
-    let predicted: Vec<f64> = x.iter().zip(&v).map(|(x, v)| x + h * v).collect();
     let is_implicit = scene.integrator.is_implicit();
-    let (place, at_which) = if is_implicit { (&predicted, "x + h v") } else { (&x, "x") };
-    let all = gradients(scene, place, &v);
+    let at_which = if is_implicit { "x + h v" } else { "x" };
+    let place: Vec<f64> = x.iter().zip(&v).map(|(x, v)| if is_implicit { x + h * v } else { *x }).collect();
+    let all = gradients(scene, &place, &v);
     let has_any = |values: &[f64]| values.iter().any(|value| *value != 0.0);
     if has_handling && !all.iter().any(|gradient| has_any(gradient)) {
         return None;
     }
-    let (mut systems, mut simulation) =
-        (Steering(StepSystems::default()), Simulation::new(scene, RootSearch::WhereNeeded));
+    let sum: Vec<f64> = (0..x.len()).map(|entry| all.iter().map(|gradient| gradient[entry]).sum()).collect();
+    let mut systems = Steering(FirstSystem(None));
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     simulation.step(&mut systems).ok()?;
-    let (end, sum, particles) = (simulation.state(), sum(&all, x.len()), 0..scene.particles.len());
-    let names = scene.forces.iter().map(force_name).chain(["penalty".to_owned()]);
-    let mut parts: Vec<(String, &Vec<f64>)> = names.zip(&all).collect();
+    let (end, particles) = (simulation.state(), 0..scene.particles.len());
+    let names = scene.forces.iter().map(|force| force.kind().element()).chain(["penalty"]);
+    let mut parts: Vec<(&str, &Vec<f64>)> = names.zip(&all).collect();
     // A force of the scene is computed even if it comes to nothing.
-    parts.retain(|(name, gradient)| name != "penalty" || has_any(gradient));
+    parts.retain(|(name, gradient)| *name != "penalty" || has_any(gradient));
     if parts.len() > 1 {
-        parts.push(("together".to_owned(), &sum));
+        parts.push(("together", &sum));
     }
     let rows = parts.iter().flat_map(|(name, gradient)| {
-        let is_acting = |particle: &usize| !has_any(gradient) || has_any(at(gradient, *particle).as_slice());
-        let acting = particles.clone().filter(is_acting);
-        acting.map(|particle| [name.clone(), particle.to_string(), vector(at(gradient, particle))])
+        let row = |particle: usize| [(*name).to_owned(), particle.to_string(), vector(at(gradient, particle))];
+        particles.clone().map(row)
     });
     let mut text = format!("Forces at {at_which}\n");
     text += &if parts.is_empty() { "  none\n".to_owned() } else { table(["", "particle", "gradient"], rows) };
     let formulas: BTreeSet<&str> = scene.forces.iter().map(formula).collect();
     text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));
-    text.extend(penalty(scene, place));
+    text.extend(penalty(scene, &place));
     let words = match scene.integrator {
         Integrator::ExplicitEuler => "x becomes x + h v, v becomes v + h a",
         Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler => "v becomes v + h a, then x becomes x + h v",
-        Integrator::LinearizedImplicitEuler => {
-            "v becomes v + d, then x becomes x + h v, with b = -h gradient, A delta = b, and d = delta"
-        }
+        Integrator::LinearizedImplicitEuler => "v becomes v + d, then x becomes x + h v",
         Integrator::ImplicitEuler => {
-            "Newton's method for d; v becomes v + d, then x becomes x + h v\n  \
-             b = -M d - h gradient at x + h (v + d) and v + d, first with d = 0; A delta = b, and d becomes d + delta"
+            "v becomes v + d, then x becomes x + h v; Newton's method adds its d up until they are short, each with \
+             b = -M d - h gradient and A at x + h (v + d) and v + d; this is the first"
         }
     };
     text += &format!("\nStep {step}, h = {}: {words}\n", short(h));
+    text.extend(systems.0.0.map(|matrix| system(scene, matrix, &sum)));
     let rows = particles.map(|particle| {
         let [v, x] = [&end.velocities, &end.positions].map(|values| vector(at(values, particle)));
         let body = &scene.particles[particle];
@@ -110,51 +103,34 @@ fn integration(scene: &Scene, step: u32) -> Option<String> {
         [particle.to_string(), v, x, if is_implicit { String::new() } else { vector(a) }]
     });
     let a = if is_implicit { "" } else { "with a = -gradient / m" };
-    Some(text + &solves(scene, &systems.0.0) + &table(["particle", "v", "x", a], rows))
+    Some(text + &table(["particle", "v", "x", a], rows))
 }
 
-/// Renders the systems that an implicit integrator solves, and their solutions.
-fn solves(scene: &Scene, matrices: &[Vec<f64>]) -> String {
-    let (State { positions, velocities }, h) = (State::for_scene(scene), scene.time_step);
-    let (size, mut text, mut before) = (positions.len(), String::new(), &Vec::new());
-    let mut d = vec![0.0; size];
-    for (matrix, iteration) in matrices.iter().zip(1..=MOST_ITERATIONS) {
-        let v: Vec<f64> = velocities.iter().zip(&d).map(|(v, d)| v + d).collect();
-        let x: Vec<f64> = positions.iter().zip(&v).map(|(x, v)| x + h * v).collect();
-        let mut b = sum(&gradients(scene, &x, &v), size);
-        for (entry, value) in b.iter_mut().enumerate() {
-            let body = &scene.particles[entry / 2];
-            *value = if body.fixed { 0.0 } else { -body.mass * d[entry] - h * *value };
+/// Renders the first system that an implicit integrator solves, and its solution.
+fn system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> String {
+    let (size, mut text) = (gradient.len(), "  A d = b with A = M + h Hv + h^2 Hx and b = -h gradient\n".to_owned());
+    if size <= MOST_ROWS {
+        let width = matrix.iter().map(|entry| short(*entry).len()).max().unwrap_or_default();
+        for row in 0..size {
+            let entries = matrix.iter().skip(row).step_by(size).map(|entry| format!("  {:>width$}", short(*entry)));
+            text += &format!("  {}\n", entries.collect::<String>());
         }
-        let mut delta = b.clone();
-        linear::solve(&mut matrix.clone(), &mut delta, &mut linear::Workspace::default());
-        d.iter_mut().zip(&delta).for_each(|(d, delta)| *d += delta);
-        if size <= MOST_ROWS && matrix != before {
-            text += "  A = M + h Hv + h^2 Hx\n";
-            let width = matrix.iter().map(|entry| short(*entry).len()).max().unwrap_or_default();
-            for row in 0..size {
-                let entry = |column: usize| format!("{:>width$}", short(matrix[column * size + row]));
-                text += &format!("    {}\n", (0..size).map(entry).collect::<Vec<_>>().join("  "));
-            }
-        }
-        before = matrix;
-        let rows = (0..size / 2).map(|particle| {
-            let [b, delta, d] = [&b, &delta, &d].map(|values| vector(at(values, particle)));
-            [particle.to_string(), b, delta, d]
-        });
-        text += &format!("  iteration {iteration} of {}\n", matrices.len());
-        text += &table(["particle", "b", "delta", "d"], rows);
     }
-    text
+    let is_fixed = |entry: usize| scene.particles[entry / 2].fixed;
+    let b = gradient.iter().enumerate().map(|(entry, g)| if is_fixed(entry) { 0.0 } else { -scene.time_step * g });
+    let b: Vec<f64> = b.collect();
+    let mut d = b.clone();
+    linear::solve(&mut matrix, &mut d, &mut linear::Workspace::default());
+    let rows = (0..size / 2).map(|index| [index.to_string(), vector(at(&b, index)), vector(at(&d, index))]);
+    text + &table(["particle", "b", "d"], rows)
 }
 
-/// The system matrix of each solve of a step, column by column.
-#[derive(Default)]
-struct StepSystems(Vec<Vec<f64>>);
+/// The system matrix of the first solve of a step, column by column.
+struct FirstSystem(Option<Vec<f64>>);
 
-impl Steer for StepSystems {
+impl Steer for FirstSystem {
     fn system(&mut self, matrix: &mut [f64]) {
-        self.0.push(matrix.to_vec());
+        self.0.get_or_insert_with(|| matrix.to_vec());
     }
 }
 
@@ -178,25 +154,6 @@ fn penalty(scene: &Scene, x: &[f64]) -> Option<String> {
                 opposite for the other; an edge's ends share it by 1 - alpha and alpha";
     let heading = ["penalty", "|n|", "r = radii and thickness", "k (|n| - r)", "added"];
     (!rows.is_empty()).then(|| format!("{}  {rule}\n", table(heading, rows)))
-}
-
-/// Adds arrays of this length.
-fn sum(all: &[Vec<f64>], length: usize) -> Vec<f64> {
-    let mut sum = vec![0.0; length];
-    all.iter().for_each(|one| sum.iter_mut().zip(one).for_each(|(sum, part)| *sum += part));
-    sum
-}
-
-/// Returns the element of a force, and what it acts on.
-fn force_name(force: &Force) -> String {
-    let element = force.kind().element();
-    match force {
-        Force::Spring { edge, .. } => format!("{element} on edge {edge}"),
-        Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => {
-            format!("{element} of {first} and {second}")
-        }
-        Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => element.to_owned(),
-    }
 }
 
 /// Returns what a force adds to the gradient.

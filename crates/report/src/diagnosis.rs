@@ -39,10 +39,12 @@ impl Diagnosis {
     /// Renders the report for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
-        let smallest =
-            self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, None, style))).collect::<String>();
-        if let [case] = &self.cases[..] {
-            return render_single(case, style) + &smallest;
+        let smallest: String = self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, style))).collect();
+        match &self.cases[..] {
+            [] if smallest.is_empty() => return "No smaller scene shows again what is wrong.\n".to_owned(),
+            [] => return smallest.trim_start().to_owned(),
+            [case] => return render_single(case, style) + &smallest,
+            _ => {}
         }
         let mut text = String::new();
         let wrong = self.cases.iter().filter(|case| !case.accepted).count();

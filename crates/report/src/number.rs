@@ -2,7 +2,13 @@
 //!
 //! Pure functions.
 
-pub use fosssim_num::printed::{exact, general};
+pub use fosssim_num::printed::general;
+
+/// Returns the shortest text that reads back as the same number, without the sign of a zero, which nobody computes.
+#[must_use]
+pub fn exact(value: f64) -> String {
+    fosssim_num::printed::exact(value + 0.0)
+}
 
 /// Returns a short fraction where a number is one but for a few roundings, and its digits are many: `1/3`.
 fn fraction(value: f64) -> Option<String> {
@@ -19,7 +25,6 @@ const NOTHING: f64 = 1e-13;
 
 /// Returns a number as it is computed by hand: short decimals or a short fraction, else six digits.
 pub(crate) fn short(value: f64) -> String {
-    // Without the sign of a zero, which nobody computes by hand.
     tidy(if value.abs() < NOTHING { 0.0 } else { value }, general)
 }
 

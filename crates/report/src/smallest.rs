@@ -13,47 +13,29 @@ use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestSce
 /// Returns the size and the origin of the scene, in a sentence.
 pub(crate) fn title(small: &SmallestScene) -> String {
     let SmallestScene { bodies, origin, .. } = small;
-    let bodies = match bodies {
-        0 => "no body".to_owned(),
-        1 => "1 body".to_owned(),
-        more => format!("{more} bodies"),
-    };
+    let noun = if *bodies == 1 { "body" } else { "bodies" };
     let (steps, runs) = (format_count(small.steps.into(), "step"), format_count(small.runs.into(), "run"));
     let end = if small.is_minimal { "" } else { "; the search was stopped" };
-    format!("The smallest scene: {bodies}, {steps} (made from {origin} in {runs}{end})")
+    format!("The smallest scene: {bodies} {noun}, {steps} (made from {origin} in {runs}{end})")
 }
 
-/// Renders the report for people. `file` is the one with the scene, if it was written.
+/// Renders the report for people.
 #[must_use]
-pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
-    let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
-    let mut parts = vec![heading(&title(small))];
-    parts[0].extend(causes(small, style).iter().map(|line| format!("  {line}\n")));
-    parts.push(small.xml.clone());
-    parts.extend(small.differs.clone());
-    parts.extend(small.by_hand.iter().map(|by_hand| heading("By hand") + by_hand));
-    let commands = commands(small, file).into_iter().map(|line| format!("  $ {line}\n"));
-    let save = if file.is_none() { "  Save the scene as small.xml (--output writes it).\n" } else { "" };
-    parts.push(heading("Next") + save + &commands.collect::<String>());
-    parts.join("\n")
-}
-
-/// Returns why the program is wrong on it, a line each.
-fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
+pub fn text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first, explanations, .. } = small;
+    let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
     let told = lines(&explanations[..explanations.len().min(1)], style);
     let first = first.as_ref().filter(|_| told.is_empty()).map(first_divergence);
-    note.iter().cloned().chain(first).chain(told).collect()
-}
-
-/// Returns commands that run the program on the scene and show more.
-fn commands(small: &SmallestScene, file: Option<&str>) -> Vec<String> {
-    let (scene, program) = (quote(file.unwrap_or("small.xml")), quote(&small.program));
-    let detect =
-        small.detect.as_ref().map(|pair| format!("fosssim-oracle detect --scene {scene} --trace small.bin {pair}"));
-    let check = small.note.is_none().then(|| format!("fosssim-oracle check {scene} small.bin --all"));
-    let run = format!("{program} -s {scene} -d 0 -o small.bin");
-    std::iter::once(run).chain(check).chain(detect).chain([small.again.clone()]).collect()
+    let causes = note.iter().cloned().chain(first).chain(told).map(|line| format!("  {line}\n"));
+    let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];
+    parts.extend(small.differs.clone());
+    parts.extend(small.by_hand.iter().map(|by_hand| heading("By hand") + by_hand));
+    let run = format!("{} -s small.xml -d 0 -o small.bin", quote(&small.program));
+    let check = note.is_none().then(|| "fosssim-oracle check small.xml small.bin --all".to_owned());
+    let commands = std::iter::once(run).chain(check).chain([small.again.clone()]);
+    let save = "  Save the scene as small.xml (shrink --output writes it).\n".to_owned();
+    parts.push(heading("Next") + &commands.fold(save, |text, line| text + &format!("  $ {line}\n")));
+    parts.join("\n")
 }
 
 view! {

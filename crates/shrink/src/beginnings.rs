@@ -1,4 +1,5 @@
 //! Wrong steps as scenes of their own: the state before a step is the initial state.
+use crate::size::set_steps;
 use fosssim_model::{
     scene::{Display, Scene},
     sim::State,
@@ -14,23 +15,11 @@ const MOST_STEPS: usize = 6;
 /// of the scene; steps count from 1 and ascend. Parts that only a display uses are removed.
 #[must_use]
 pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene)> {
-    let Some(&first) = wrong.first() else { return Vec::new() };
-    let wanted: Vec<u32> = wrong.iter().copied().take(MOST_STEPS).collect();
-    let states = states(scene, trace, wanted.last().copied().unwrap_or(first));
-    let from = |step: u32, steps: u32| {
-        let state = states.get(step as usize - 1).filter(|state| state.is_finite())?;
-        Some(from_state(scene, state, steps))
-    };
-    let alone = wanted.iter().filter_map(|step| Some((*step, from(*step, 1)?)));
-    let with_before = (first > 1).then(|| from(first - 1, 2)).flatten();
-    let whole = (first > 2).then(|| from(1, first)).flatten();
-    alone.chain([with_before, whole].into_iter().flatten().map(|scene| (first, scene))).collect()
-}
-
-/// Returns the state before each step up to this one, if the trace has them.
-fn states(scene: &Scene, trace: &[u8], last: u32) -> Vec<State> {
+    let wrong = &wrong[..wrong.len().min(MOST_STEPS)];
+    let (Some(&first), Some(&last)) = (wrong.first(), wrong.last()) else { return Vec::new() };
     let layout = Layout::for_scene(scene);
     let (mut reader, mut frame) = (Lenient::from_slice(trace, layout), LenientFrame::default());
+    // The state before each step, if the trace has it.
     let mut states = vec![State::for_scene(scene)];
     while states.len() < last as usize && reader.next(&mut frame).is_ok() {
         let record = reader.records() - 1;
@@ -38,24 +27,17 @@ fn states(scene: &Scene, trace: &[u8], last: u32) -> Vec<State> {
             states.push(frame.state.clone());
         }
     }
-    states
-}
-
-/// Returns the scene that begins in this state and takes this number of steps.
-fn from_state(scene: &Scene, state: &State, steps: u32) -> Scene {
-    let mut scene = Scene { description: None, display: Display::default(), ..scene.clone() };
-    for (index, particle) in scene.particles.iter_mut().enumerate() {
-        (particle.position, particle.velocity) = (at(&state.positions, index), at(&state.velocities, index));
-        particle.tag = None;
-    }
-    set_steps(&mut scene, steps);
-    scene
-}
-
-/// Sets the duration to this number of steps.
-pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
-    scene.duration = scene.time_step * f64::from(steps);
-    if scene.steps() != steps {
-        scene.duration = scene.time_step * (f64::from(steps) - 0.5);
-    }
+    let from = |step: u32, steps: u32| {
+        let state = states.get(step.checked_sub(1)? as usize).filter(|state| state.is_finite())?;
+        let mut scene = Scene { description: None, display: Display::default(), ..scene.clone() };
+        for (index, particle) in scene.particles.iter_mut().enumerate() {
+            (particle.position, particle.velocity) = (at(&state.positions, index), at(&state.velocities, index));
+            particle.tag = None;
+        }
+        set_steps(&mut scene, steps);
+        Some(scene)
+    };
+    let alone = wrong.iter().map(|&step| (step, from(step, 1)));
+    let longer = [(first, from(first - 1, 2)), (first, from(1, first))];
+    alone.chain(longer).filter_map(|(step, scene)| Some((step, scene?))).collect()
 }

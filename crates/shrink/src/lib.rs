@@ -1,16 +1,17 @@
 //! The smallest scene on which a program is still wrong for the same reason.
 //!
 //! Every step is judged from the submission's own state, so any wrong step is a scene of one step ([`beginnings`]).
-//! From there a [`Reducer`] removes bodies, edges, half-planes and forces, simplifies features, and takes rounder
+//! From there [`reduce`] removes bodies, edges, half-planes and forces, simplifies features, and takes rounder
 //! numbers, as long as the program stays wrong for its [`WrongReason`]. The order of attempts is fixed, and the result
 //! is 1-minimal: no single attempt makes it smaller (delta debugging, Zeller and Hildebrandt 2002).
 //!
 //! It runs no program and reads no clock: its caller does, and decides with each answer whether to continue.
 //!
 //! ```
+//! use fosssim_ended::RunEnd;
 //! use fosssim_student::{self as student, Mistake, Student};
 //! use fosssim_model::{assignments::Assignment, scene};
-//! use fosssim_shrink::{Observation, Reducer, WrongReason, beginnings};
+//! use fosssim_shrink::{Observation, WrongReason, beginnings, reduce};
 //!
 //! let text = br#"<scene>
 //!   <duration time="0.5"/> <integrator type="explicit-euler" dt="0.125"/> <collision type="none"/>
@@ -20,14 +21,15 @@
 //! </scene>"#;
 //! let scene = scene::read("two balls", text)?.scene;
 //! let row = student::find("gravity-no-mass").expect("a row");
-//! let run = |scene: &_| Observation::from_trace(student::trace(scene, Student::new(Some(row.mistake))).unwrap());
+//! let run = |scene: &_| {
+//!     let trace = student::trace(scene, Student::new(Some(row.mistake))).expect("a whole trace");
+//!     Observation { trace, ended: RunEnd::Exited(0) }
+//! };
 //!
 //! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
-//! let holds = |scene: &_| Some(reason.holds(scene, &run(scene)));
 //! let begin = beginnings(&scene, &run(&scene).trace, &[1]);
-//! let reducer =
-//!     Reducer { reason: &reason, assignment: Assignment::T1M1, holds: &holds, is_over: &|| false, most_runs: 2_000 };
-//! let found = reducer.reduce(begin).expect("a scene");
+//! let mut holds = |scene: &_, is_alone| Some(reason.holds(scene, &run(scene), is_alone));
+//! let found = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
 //! assert_eq!((found.scene.steps(), found.scene.particles.len()), (1, 1));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -35,17 +37,13 @@
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod beginnings;
-mod clear;
-mod features;
-mod numbers;
-mod parts;
 mod reason;
 mod reducer;
+mod reductions;
 mod size;
 #[cfg(test)]
 mod tests;
 
 pub use beginnings::beginnings;
 pub use reason::{Observation, WrongReason};
-pub use reducer::{EndTest, Holds, Reducer, SmallScene};
-pub use size::SceneSize;
+pub use reducer::{Holds, SmallScene, reduce};

@@ -1,91 +1,157 @@
-//! The size of a scene: the amount that its reader has to take in.
-use crate::{clear::run, numbers::numbers};
-use fosssim_model::scene::{Collision, Integrator, Scene};
+//! The numbers and the size of a scene: the amount that its reader has to take in.
+use fosssim_model::{
+    scene::{Collision, Force, Integrator, Scene},
+    sim::{Detection, Observer, Pair, RootSearch, Simulation},
+};
 
 /// The reference is asked about scenes of at most this many bodies and steps.
 const FEW: usize = 8;
 /// Digits of a number that is computed by hand.
 const HANDY: usize = 3;
+/// The relative and absolute change of numbers that must not matter, and the factor by which it may grow.
+const SHIFT: f64 = 1e-9;
+const GROWTH: f64 = 1e4;
 
-/// The size of a scene. The first field that differs decides which of two scenes is smaller.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct SceneSize {
-    /// Steps.
-    pub steps: u32,
-    /// Particles.
-    pub bodies: usize,
-    /// Edges and half-planes.
-    pub objects: usize,
-    /// Forces.
-    pub forces: usize,
-    /// Features that are not the plainest: the integrator, the kind of collision handling, fixed bodies.
-    pub features: usize,
-    /// Collisions that the reference detects.
-    pub collisions: usize,
-    /// Digits of all numbers that are not plain, such as a mass of 1, and those of the reference's last state as far as
-    /// they are more than anybody computes by hand.
-    pub digits: usize,
-    /// The numbers' magnitudes and signs: among equals, 1 before 7 and 7 before -7.
-    pub magnitude: u64,
+/// The kind of a number in a scene.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NumberKind {
+    /// A coordinate of a place; a scene has no origin of its own.
+    Place,
+    /// A component of a velocity.
+    Velocity,
+    /// A number that is 0 at best, such as a thickness or a component of a force.
+    Addition,
+    /// A number that is 1 at best, such as a mass or the time step.
+    Factor,
 }
 
-impl SceneSize {
-    /// Measures a scene.
-    #[must_use]
-    pub fn from_scene(scene: &Scene) -> Self {
-        let mut copy = scene.clone();
-        let (mut written, mut magnitude) = (0, 0);
-        for (quantity, _, value) in numbers(&mut copy) {
-            if *value != quantity.plain() {
-                written += written_digits(*value);
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "bounded, and no NaN")]
-                let size = (value.abs() * 16.0).min(1e6) as u64;
-                magnitude += 2 * size + u64::from(*value < 0.0);
+impl NumberKind {
+    /// Returns the simplest value, which needs no thought.
+    pub(crate) fn plain(self) -> f64 {
+        f64::from(u8::from(self == Self::Factor))
+    }
+}
+
+/// Returns all numbers of a scene in its order, the time step first. A caller that changes it sets the duration, too.
+pub(crate) fn numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
+    use NumberKind::{Addition, Factor, Place, Velocity};
+    let mut all = vec![(Factor, &mut scene.time_step)];
+    match &mut scene.collision {
+        Collision::None => {}
+        Collision::Simple { restitution } | Collision::ContinuousTime { restitution } => {
+            all.push((Factor, restitution));
+        }
+        Collision::Penalty { stiffness, thickness, .. } => all.extend([(Factor, stiffness), (Addition, thickness)]),
+        // The penalty force of `hybrid` is an addition.
+        Collision::Hybrid { restitution, stiffness, thickness, .. } => {
+            all.extend([(Factor, restitution), (Addition, stiffness), (Addition, thickness)]);
+        }
+    }
+    for particle in &mut scene.particles {
+        all.extend(particle.position.iter_mut().map(|value| (Place, value)));
+        all.extend(particle.velocity.iter_mut().map(|value| (Velocity, value)));
+        all.extend([(Factor, &mut particle.mass), (Factor, &mut particle.radius)]);
+    }
+    all.extend(scene.edges.iter_mut().map(|edge| (Factor, &mut edge.radius)));
+    for plane in &mut scene.half_planes {
+        all.extend(plane.point.iter_mut().map(|value| (Place, value)));
+        all.extend(plane.normal.iter_mut().map(|value| (Addition, value)));
+    }
+    for force in &mut scene.forces {
+        match force {
+            Force::Spring { stiffness, rest_length, damping, .. } => {
+                all.extend([(Factor, stiffness), (Addition, rest_length), (Addition, damping)]);
             }
+            Force::SimpleGravity { acceleration: vector } | Force::Constant { force: vector } => {
+                all.extend(vector.iter_mut().map(|value| (Addition, value)));
+            }
+            Force::Gravitation { constant: factor, .. } | Force::Drag { coefficient: factor } => {
+                all.push((Factor, factor));
+            }
+            Force::Vortex { strength, coupling, .. } => all.extend([(Factor, strength), (Factor, coupling)]),
         }
-        let handling = match scene.collision {
-            Collision::None => 0,
-            Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
-            Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
-        };
-        let (collisions, computed) = outcome(scene);
-        let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
-        Self {
-            steps: scene.steps(),
-            bodies: scene.particles.len(),
-            objects: scene.edges.len() + scene.half_planes.len(),
-            forces: scene.forces.len(),
-            features: effort(scene.integrator) + handling + fixed,
-            collisions,
-            digits: written + computed,
-            magnitude,
-        }
+    }
+    all
+}
+
+/// Sets the duration to this number of steps.
+pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
+    scene.duration = scene.time_step * f64::from(steps);
+    if scene.steps() != steps {
+        scene.duration = scene.time_step * (f64::from(steps) - 0.5);
     }
 }
 
-/// Returns how many collisions the reference detects, and the digits of its last state that are too many.
-fn outcome(scene: &Scene) -> (usize, usize) {
-    if scene.particles.len().max(scene.steps() as usize) > FEW {
-        return (0, 0);
-    }
-    let Some((decisions, end)) = run(scene) else { return (usize::MAX, 0) };
-    let too_many = |value: &f64| written_digits(*value).saturating_sub(HANDY);
-    (decisions.iter().filter(|(_, collides)| *collides).count(), end.iter().map(too_many).sum())
-}
+/// The size of a scene: the first number that differs decides which of two is smaller.
+pub(crate) type Size = ([usize; 7], f64);
 
-/// Returns a rank of integrators: the work of a step by hand.
-const fn effort(integrator: Integrator) -> usize {
-    match integrator {
-        Integrator::ExplicitEuler => 0,
-        Integrator::SymplecticEuler => 1,
-        Integrator::ForwardBackwardEuler => 2,
-        Integrator::LinearizedImplicitEuler => 3,
-        Integrator::ImplicitEuler => 4,
+/// Measures a scene: steps; bodies; edges and half-planes; forces; features that are not the plainest; collisions that
+/// the reference detects; digits of all numbers that are not plain, such as a mass of 1, and those of the result as far
+/// as they are more than anybody computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
+pub(crate) fn size(scene: &Scene) -> Size {
+    use Integrator::{ExplicitEuler, ForwardBackwardEuler, ImplicitEuler, LinearizedImplicitEuler, SymplecticEuler};
+    let mut copy = scene.clone();
+    let not_plain = numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.plain());
+    let (mut written, mut magnitude) = (0, 0.0);
+    for (_, value) in not_plain {
+        written += digits(*value);
+        magnitude += value.abs() + if *value < 0.0 { 0.01 } else { 0.0 };
     }
+    let efforts = [ExplicitEuler, SymplecticEuler, ForwardBackwardEuler, LinearizedImplicitEuler, ImplicitEuler];
+    let effort = efforts.iter().position(|one| *one == scene.integrator).unwrap_or_default();
+    let handling = match scene.collision {
+        Collision::None => 0,
+        Collision::Simple { .. } | Collision::Penalty { .. } | Collision::ContinuousTime { .. } => 1,
+        Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
+    };
+    let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
+    let is_small = scene.particles.len().max(scene.steps() as usize) <= FEW;
+    let (hits, end) = if is_small { run(scene).unwrap_or_default() } else { Default::default() };
+    let hits = hits.iter().filter(|(_, collides)| *collides).count();
+    let long: usize = end.iter().map(|value| digits(*value).saturating_sub(HANDY)).sum();
+    let (steps, bodies) = (scene.steps() as usize, scene.particles.len());
+    let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
+    ([steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
 }
 
 /// Returns the digits of a number as it is written, without the zero before its point: 2 for 0.05, for 1.5 and for 10.
-fn written_digits(value: f64) -> usize {
+fn digits(value: f64) -> usize {
     let text = value.abs().to_string();
     text.strip_prefix("0.").unwrap_or(&text).chars().filter(char::is_ascii_digit).count()
+}
+
+/// Returns whether the reference has a result, and no other round-off would lead to another one.
+pub(crate) fn is_clear(scene: &Scene) -> bool {
+    let Some((decisions, end)) = run(scene) else { return false };
+    (1..=2_usize).all(|seed| {
+        let mut shifted = scene.clone();
+        for (index, (_, value)) in numbers(&mut shifted).into_iter().enumerate().skip(1) {
+            // Up or down, as if by chance (Knuth's multiplicative hashing).
+            let is_up = (seed * 64 + index).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0;
+            *value += if is_up { SHIFT } else { -SHIFT } * (1.0 + value.abs());
+        }
+        let is_near = |(one, other): (&f64, &f64)| (one - other).abs() <= SHIFT * GROWTH * (1.0 + one.abs());
+        run(&shifted).is_some_and(|(others, other)| others == decisions && end.iter().zip(&other).all(is_near))
+    })
+}
+
+/// The reference's decision about each pair in the order of its detections, and all numbers of its last state.
+type RunResult = (Vec<(Pair, bool)>, Vec<f64>);
+
+/// Runs the reference; `None` if a step has no result.
+pub(crate) fn run(scene: &Scene) -> Option<RunResult> {
+    #[derive(Default)]
+    struct Decisions(Vec<(Pair, bool)>);
+    impl Observer for Decisions {
+        fn detection(&mut self, detection: &Detection<'_>) {
+            self.0.push((detection.pair, detection.decision.collides()));
+        }
+    }
+    let mut decisions = Decisions::default();
+    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    for _ in 0..scene.steps() {
+        simulation.step(&mut decisions).ok()?;
+    }
+    let state = simulation.state();
+    state.is_finite().then(|| (decisions.0, [&state.positions[..], &state.velocities].concat()))
 }

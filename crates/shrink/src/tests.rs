@@ -1,13 +1,20 @@
 use super::*;
+use fosssim_findings::Stop;
+use fosssim_judge::replay::{Options, judge};
 use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
 use fosssim_student::{Student, assignments::probe_scenes, find, trace_within};
 
+/// Returns the observation of a program that ended well.
+fn from_trace(trace: Vec<u8>) -> Observation {
+    Observation { trace, ended: fosssim_ended::RunEnd::Exited(0) }
+}
+
 /// Returns what the simulator with mistakes makes of a scene.
 fn run(scene: &Scene, student: Student) -> Observation {
-    Observation::from_trace(trace_within(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
+    from_trace(trace_within(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
 }
 
 /// Returns the most significant digits that a number of the scene has: 1 for 0.05 and for 10, 2 for 1.5.
@@ -16,7 +23,7 @@ fn most_digits(scene: &Scene) -> usize {
         let digits: String = value.abs().to_string().chars().filter(char::is_ascii_digit).collect();
         digits.trim_matches('0').len()
     };
-    numbers::numbers(&mut scene.clone()).into_iter().map(|(.., value)| significant(value)).max().unwrap_or(0)
+    size::numbers(&mut scene.clone()).into_iter().map(|(_, value)| significant(value)).max().unwrap_or(0)
 }
 
 /// Shrinks a probe scene on which a program with this mistake is wrong.
@@ -26,9 +33,8 @@ fn smallest(assignment: Assignment, mistake: &str) -> (WrongReason, SmallScene) 
         let seen = run(&scene, student);
         let Some(reason) = WrongReason::first(&scene, &seen) else { continue };
         let steps: Vec<u32> = (1..=scene.steps()).collect();
-        let holds = |scene: &Scene| Some(reason.holds(scene, &run(scene, student)));
-        let reducer = Reducer { reason: &reason, assignment, holds: &holds, is_over: &|| false, most_runs: 2_000 };
-        let found = reducer.reduce(beginnings(&scene, &seen.trace, &steps)).expect("a scene");
+        let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
+        let found = reduce(&beginnings(&scene, &seen.trace, &steps), assignment, &mut holds).expect("a scene");
         return (reason, found);
     }
     panic!("{mistake} shows on no probe scene");
@@ -45,7 +51,7 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         (T2M1, "respond-half-planes-missing", 1),
         (T2M2, "pp-radius-not-squared", 2),
         (T2M2, "pe-square-no-eh", 3),
-        (T2M2, "failsafe-stop-keeps-position", 2),
+        (T2M2, "failsafe-stop-keeps-position", 3),
     ] {
         let (reason, small) = smallest(assignment, mistake);
         let (scene, student) = (&small.scene, Student::new(Some(find(mistake).expect("a row").mistake)));
@@ -53,10 +59,10 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         assert_eq!((scene.steps(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
         assert!(most_digits(scene) <= 2, "{mistake}: {}", scene::write(scene));
         // The result can be computed by hand, too: 0.375, but no 17 digits.
-        let (_, end) = clear::run(scene).expect("a result");
+        let (_, end) = size::run(scene).expect("a result");
         let short = |value: &f64| value.to_string().len() < 9;
         assert!(assignment == T1M3 || end.iter().all(short), "{mistake}: {end:?}");
-        assert!(reason.holds(scene, &run(scene, student)), "{mistake}");
+        assert!(reason.holds(scene, &run(scene, student), false), "{mistake}");
         assert!(scene.unknown_to(assignment).next().is_none(), "{mistake}");
         for right in [Student::default(), Student::default().with_right_approach()] {
             assert_eq!(WrongReason::first(scene, &run(scene, right)), None, "{mistake}");
@@ -69,15 +75,25 @@ fn a_search_that_is_stopped_keeps_the_best_so_far() {
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let student = Student::new(Some(find("gravity-doubled").expect("a row").mistake));
     let reason = WrongReason::first(scene, &run(scene, student)).expect("wrong");
-    let holds = |scene: &Scene| Some(reason.holds(scene, &run(scene, student)));
+    let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
     let begin = beginnings(scene, &run(scene, student).trace, &[1]);
-    let (assignment, most_runs) = (Assignment::T1M1, 2_000);
-    let reducer = Reducer { reason: &reason, assignment, holds: &holds, is_over: &|| false, most_runs };
-    let all = reducer.reduce(begin.clone()).expect("a scene");
-    let some = Reducer { most_runs: 2, ..reducer }.reduce(begin).expect("one");
-    assert!(all.is_minimal && !some.is_minimal && some.runs <= 2);
-    assert!(SceneSize::from_scene(&all.scene) < SceneSize::from_scene(&some.scene));
-    assert!(reason.holds(&some.scene, &run(&some.scene, student)));
+    let all = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
+    let mut runs = 0..2;
+    let mut few = |scene: &Scene, is_alone| runs.next().and_then(|_| holds(scene, is_alone));
+    let some = reduce(&begin, Assignment::T1M1, &mut few).expect("one");
+    assert!(all.is_minimal && !some.is_minimal);
+    assert!(size::size(&all.scene) < size::size(&some.scene));
+    assert!(reason.holds(&some.scene, &run(&some.scene, student), false));
+}
+
+/// A program that never ends shows it on any scene: one body is tried before all else.
+#[test]
+fn one_body_is_tried_first() {
+    let scene = &probe_scenes(Assignment::T2M2)[0].1;
+    let mut runs = 0..2;
+    let mut holds = |_: &Scene, _| runs.next().map(|_| true);
+    let small = reduce(&beginnings(scene, &[], &[1]), Assignment::T2M2, &mut holds).expect("a scene");
+    assert!(scene.particles.len() > 1 && small.scene.particles.len() == 1);
 }
 
 #[test]
@@ -86,9 +102,35 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let seen = |ended| Observation { trace: Vec::new(), ended };
     let reason = |ended| WrongReason::first(scene, &seen(ended)).expect("wrong");
-    assert!(reason(Signalled(11)).holds(scene, &seen(Signalled(11))));
-    assert!(!reason(Signalled(11)).holds(scene, &seen(Signalled(8))));
-    assert!(reason(CpuLimit).holds(scene, &seen(WallLimit)));
-    assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit)));
-    assert_eq!(WrongReason::first(scene, &Observation::from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
+    assert!(reason(Signalled(11)).holds(scene, &seen(Signalled(11)), false));
+    assert!(!reason(Signalled(11)).holds(scene, &seen(Signalled(8)), false));
+    assert!(reason(CpuLimit).holds(scene, &seen(WallLimit), false));
+    assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit), false));
+    assert_eq!(WrongReason::first(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
+}
+
+/// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, and the
+/// trace is whole.
+#[test]
+fn a_judgement_that_stops_is_no_broken_trace() {
+    let posts = |y: f64, fixed: u8| {
+        let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
+        let text = format!(
+            r#"<scene><duration time="2"/><integrator type="symplectic-euler" dt="0.1"/>
+            <collision type="hybrid" COR="1" maxiters="2000000000" k="0" thickness="0.01"/>
+            <particle m="1" px="0" py="{y}" vx="0" vy="0" fixed="{fixed}" radius="0.2"/>{}{}
+            <simplegravity fx="10" fy="0"/></scene>"#,
+            post(-0.25),
+            post(0.25)
+        );
+        scene::read("posts", text.as_bytes()).expect("a scene").scene
+    };
+    let trace = |scene: &Scene| run(scene, Student::default()).trace;
+    let (far, between) = (posts(100.0, 0), posts(0.0, 1));
+    let initial = trace(&Scene { duration: 0.0, ..far.clone() }).len();
+    let trace = [&trace(&far)[..initial], &trace(&between)[initial..]].concat();
+    let outcome = judge(&far, &trace[..], &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
+    assert!(matches!(outcome.stop, Some(Stop::Step(_))), "{:?}", outcome.stop);
+    let reason = WrongReason::first(&far, &from_trace(trace));
+    assert!(reason.is_some() && reason != Some(WrongReason::BrokenTrace), "{reason:?}");
 }

@@ -253,7 +253,7 @@ Example:
   fosssim-oracle shrink ./FOSSSim --suite t2m1 --format html > small.html
 
 The program runs in the sandbox. Without a scene there is one smallest scene for each cause; further ones go to \
-small-2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
+small.2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
 pub(super) struct ShrinkArguments {
     /// The program to run.
     pub(super) program: PathBuf,
@@ -272,7 +272,7 @@ pub(super) struct ShrinkArguments {
     #[arg(long, value_name = "N", default_value_t = 2_000)]
     pub(super) runs: u32,
     /// The most processor time for one cause, in seconds.
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 10)]
     pub(super) seconds: u32,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]

@@ -1,6 +1,6 @@
 //! `explain`: the likely mistakes of the program that left a trace, or of a program at hand.
 use super::{
-    probes::{Drawing, ExaminedProgram, ProgramUnderTest, case},
+    probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, report},
     shrink,
 };
 use crate::{
@@ -11,12 +11,7 @@ use crate::{
         output::Output,
     },
     judge::kept::LONGEST,
-    report::{
-        case::Case,
-        diagnosis::Diagnosis,
-        page::{Card, ExplainedPage},
-        style::Style,
-    },
+    report::{case::Case, diagnosis::Diagnosis, page::Card},
     suite::smallest::QUICK,
 };
 use anyhow::{Result, bail};
@@ -38,17 +33,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
         }
         (None, _) => bail!("explain takes a scene and a trace, or --program PROGRAM and any number of scenes"),
     };
-    let style = if target.is_some() { Style::Plain } else { console::style() };
-    let text = match arguments.format {
-        ExplainFormat::Text => diagnosis.text(style),
-        ExplainFormat::Json => diagnosis.json(),
-        ExplainFormat::Html => ExplainedPage { diagnosis: &diagnosis, cards: &cards }.html(),
-    };
-    match target {
-        Some(target) => target.finish_and_tell(text.as_bytes(), arguments.format == ExplainFormat::Html)?,
-        None if arguments.format == ExplainFormat::Text => console::report(&text)?,
-        None => console::print(&text)?,
-    }
+    report(&diagnosis, &cards, arguments.format, target)?;
     Ok(if diagnosis.is_accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
@@ -62,7 +47,7 @@ fn explain_program(
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
     let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
     if let Some(explained) = &mut explained {
-        shrink::add_smallest(&program, explained, QUICK, &|_| true, None, drawing(arguments))?;
+        shrink::add_smallest(&program, explained, QUICK, &|_| true, drawing(arguments))?;
     }
     let is_traceless = |(_, steps): &(_, u32)| *steps == 0;
     if suite.is_some() && explained.as_ref().is_some_and(|all| all.ends.iter().all(is_traceless)) {

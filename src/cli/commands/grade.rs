@@ -7,6 +7,7 @@ use super::{
     host::backend,
     last_run::LastRun,
     pages::{self, Pages},
+    probes::Drawing,
     results::{Report, Results, refuse_several, reports, wanted_pages},
     shard::Sharding,
     shrink,
@@ -38,7 +39,7 @@ use crate::{
         batch::{self, BatchResult},
         cards::JudgedTrace,
         catch_panic,
-        config::{Hints, Visibility},
+        config::Visibility,
         grader::Options,
         plan::{self, Plan},
         results::FolderResults,
@@ -234,9 +235,11 @@ impl GradingSession<'_> {
         }
         let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
         let program = format!("./{}", self.arguments.program);
-        let smallest = |small: &ShrunkScene, students: Hints| {
-            let hints = [self.plan.staff_hints, students];
-            shrink::describe_for_grade(small, &program, &self.arguments.suite, hints, self.pages.as_ref())
+        let smallest = |small: &ShrunkScene| {
+            let drawing = Drawing { hints: self.plan.staff_hints, has_pictures: self.pages.is_some() };
+            let (mut told, card) = shrink::describe(small, &program, &self.arguments.suite, drawing);
+            told.card = self.pages.as_ref().and_then(|pages| pages.keep(card));
+            told
         };
         let log_error = OnceLock::new();
         let finish = |grade: &Grade| {

@@ -2,7 +2,7 @@
 use super::{host::backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
-    cli::{console, input, interrupt::cancelled_by_signals},
+    cli::{arguments::ExplainFormat, console, input, interrupt::cancelled_by_signals, output::Output},
     diagnose::{self, Explanation},
     evidence::{KeptPart, examine},
     files::Place,
@@ -13,7 +13,8 @@ use crate::{
         diagnosis::Diagnosis,
         foreign::{clean_output, one_line},
         number::format_count,
-        page::Card,
+        page::{Card, ExplainedPage},
+        style::Style,
     },
     sandbox::{Backend, RunEnd},
     scene::{self, Scene},
@@ -234,6 +235,26 @@ pub(super) fn case(
         pages::card(&judged, has_trace.then_some(trace.as_str()), 2)
     });
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
+}
+
+/// Writes a report to a file, or to standard output.
+pub(super) fn report(
+    diagnosis: &Diagnosis,
+    cards: &[Option<Card>],
+    format: ExplainFormat,
+    target: Option<Output>,
+) -> Result<()> {
+    let style = if target.is_some() { Style::Plain } else { console::style() };
+    let text = match format {
+        ExplainFormat::Text => diagnosis.text(style),
+        ExplainFormat::Json => diagnosis.json(),
+        ExplainFormat::Html => ExplainedPage { diagnosis, cards }.html(),
+    };
+    match target {
+        Some(target) => target.finish_and_tell(text.as_bytes(), format == ExplainFormat::Html),
+        None if format == ExplainFormat::Text => console::report(&text),
+        None => console::print(&text),
+    }
 }
 
 /// Reads the scenes that are named.

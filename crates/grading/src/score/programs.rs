@@ -102,15 +102,14 @@ impl SubmissionGrading<'_> {
             program: &staged.program,
             assignment: plan.assignment(),
             limits: QUICK,
-            step: None,
         };
         let mut found: Vec<SmallestScene> = Vec::new();
-        for mut cause in causes(&likely, &wrong).into_iter().take(MOST_CAUSES) {
-            if cause.scenes.iter().any(|task| is_visible(&task.name)) {
-                cause.scenes.retain(|task| is_visible(&task.name));
+        for (reason, mut tasks) in causes(&likely, &wrong).into_iter().take(MOST_CAUSES) {
+            if tasks.iter().any(|task| is_visible(&task.name)) {
+                tasks.retain(|task| is_visible(&task.name));
             }
-            let small = shrinker.smallest(&cause).ok().flatten();
-            let told = small.map(|small| tell(&small, plan.student_hints(&small.origin)));
+            let small = shrinker.smallest((reason, tasks)).ok().flatten();
+            let told = small.map(|small| tell(&small));
             found.extend(told.filter(|told| told.is_new(&found)));
         }
         found

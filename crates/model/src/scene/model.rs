@@ -95,6 +95,17 @@ impl Collision {
         }
     }
 
+    /// Returns the coefficient of restitution; 1 if no collision has a response.
+    #[must_use]
+    pub const fn restitution(&self) -> f64 {
+        match *self {
+            Self::Simple { restitution } | Self::ContinuousTime { restitution } | Self::Hybrid { restitution, .. } => {
+                restitution
+            }
+            Self::None | Self::Penalty { .. } => 1.0,
+        }
+    }
+
     /// Returns the handling that its assignment requires of a program.
     ///
     /// # Panics

@@ -28,20 +28,18 @@ pub(super) struct CollisionWalk<'a> {
     start: Vec<f64>,
     /// The positions at its end, as the last pass or collision saw them, and velocities for `simple`.
     seen: State,
-    /// Whether there is a response, a loop, or the pair's detection.
-    is_telling: bool,
 }
 
 impl<'a> CollisionWalk<'a> {
     /// Begins with a scene's first step.
     pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>) -> Self {
         let start = State::for_scene(scene).positions;
-        Self { scene, pair, text: String::new(), start, seen: State::default(), is_telling: false }
+        Self { scene, pair, text: String::new(), start, seen: State::default() }
     }
 
-    /// Returns what was written, if it tells anything.
+    /// Returns what was written, if collisions are handled at all.
     pub(super) fn finish(self) -> Option<String> {
-        self.is_telling.then_some(self.text)
+        (!self.text.is_empty()).then_some(self.text)
     }
 
     fn shift(&self, particle: usize) -> Vec2 {
@@ -67,7 +65,6 @@ impl<'a> CollisionWalk<'a> {
 impl Observer for CollisionWalk<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.text += &format!("Pass {}: {}\n", pass.index + 1, PassWords(pass));
-        self.is_telling |= matches!(pass.stage, Stage::Impulses { .. } | Stage::Geometric { .. });
     }
 
     fn pass_positions(&mut self, _: &[f64], q_end: &[f64]) {
@@ -78,7 +75,7 @@ impl Observer for CollisionWalk<'_> {
         let Detection { pass, pair, decision, .. } = *detection;
         if self.pair.is_some_and(|(asked, when)| asked == pair && when.is_none_or(|when| when == pass)) {
             self.text.extend(self.detection_text(detection));
-            (self.pair, self.is_telling) = (None, true);
+            self.pair = None;
         }
         if let Decision::Hit { time, normal } = decision {
             self.seen = State { positions: detection.q_end.to_vec(), velocities: detection.velocities.to_vec() };
@@ -95,16 +92,9 @@ impl Observer for CollisionWalk<'_> {
     }
 
     fn impulse(&mut self, impulse: &Impulse) {
-        self.is_telling = true;
         let (scene, Impulse { pair, normal, time }) = (self.scene, *impulse);
         let (first, second) = (pair.first as usize, pair.second as usize);
         let is_simple = matches!(scene.collision, Collision::Simple { .. });
-        let (Collision::Simple { restitution }
-        | Collision::ContinuousTime { restitution }
-        | Collision::Hybrid { restitution, .. }) = scene.collision
-        else {
-            return;
-        };
         let u = unit(normal);
         let mut text = format!("Response to {}: u = n / |n| = {}\n", PairWords(pair), vector(u));
         let weights = match pair.kind {
@@ -133,20 +123,17 @@ impl Observer for CollisionWalk<'_> {
         };
         let rates: f64 = weights.iter().map(|&(particle, w)| w * w * rate(particle)).sum();
         let closing: f64 = weights.iter().map(|&(particle, w)| w * speed(particle).dot(&u)).sum();
-        let factor = 1.0 + restitution;
+        let factor = 1.0 + scene.collision.restitution();
         let size = if rates == 0.0 { 0.0 } else { -factor * closing / rates };
-        let letter = if is_simple { "v" } else { "D" };
         let [factor, closing, rates, result] = [factor, closing, rates, size].map(short);
-        text += &format!(
-            "  J = -(1 + COR) (sum of w {letter}.u) / (sum of w^2/m) = -{factor} * {closing} / {rates} = {result}\n"
-        );
+        let (velocity, moves) = if is_simple { ("v", "") } else { ("D = dx / h", ", x += h times that") };
+        text += &format!("  J = -(1 + COR) (sum of w {velocity:.1}.u) / (sum of w^2/m) = ");
+        text += &format!("-{factor} * {closing} / {rates} = {result}\n");
         let rows = weights.iter().map(|&(particle, w)| {
             let change = w * size * rate(particle) * u;
             [particle.to_string(), vector(speed(particle)), short(w), short(rate(particle)), vector(change)]
         });
-        let change = if is_simple { "v += w J/m u" } else { "v += w J/m u, x += h times that" };
-        let speed = if is_simple { "v" } else { "D = dx / h" };
-        text += &table(["particle", speed, "w", "1/m", change], rows);
+        text += &table(["particle", velocity, "w", "1/m", &format!("v += w J/m u{moves}")], rows);
         self.text += &text;
     }
 
@@ -162,7 +149,9 @@ impl Observer for CollisionWalk<'_> {
     }
 
     fn end_step(&mut self, _: u32, state: &State) {
-        self.text += &format!("End of the step\n{}", states(state));
+        if !self.text.is_empty() {
+            self.text += &format!("End of the step\n{}", states(state));
+        }
     }
 }
 
@@ -213,20 +202,18 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
     let rate = 1.0 / members().map(mass).sum::<f64>();
     let center = rate * members().map(|particle| mass(particle) * at(start, particle)).sum::<Vec2>();
     let motion = rate * members().map(|particle| mass(particle) * shift(particle)).sum::<Vec2>();
-    let (mut momentum, mut inertia, mut rows) = (0.0, 0.0, Vec::new());
-    for particle in members() {
-        let (m, s, rest) = (mass(particle), at(start, particle) - center, shift(particle) - motion);
-        let (angular, inertial) = (m * s.perp(&rest), m * s.dot(&s));
-        (momentum, inertia) = (momentum + angular, inertia + inertial);
-        rows.push([particle.to_string(), short(m), vector(s), vector(rest), short(angular), short(inertial)]);
-    }
-    let heading = ["particle", "m", "s = xs - x_cm", "dx - dx_cm", "m s x (dx - dx_cm)", "m |s|^2"];
+    let sum = |of: &dyn Fn(usize) -> f64| members().map(|particle| mass(particle) * of(particle)).sum::<f64>();
+    let s = |particle: usize| at(start, particle) - center;
+    let momentum = sum(&|particle| s(particle).perp(&(shift(particle) - motion)));
+    let inertia = sum(&|particle| s(particle).dot(&s(particle)));
+    let rows =
+        members().map(|index| [index.to_string(), short(mass(index)), vector(s(index)), vector(shift(index) - motion)]);
     format!(
-        "  x_cm = {}, dx_cm = {}\n{}  L = {}, I = {}, omega = L / I = {}\n  \
+        "  x_cm = {}, dx_cm = {}\n{}  L = sum of m s x (dx - dx_cm) = {}, I = sum of m |s|^2 = {}, omega = L / I = {}\n  \
          x = x_cm + dx_cm + cos(omega) s + sin(omega) (-s_y, s_x), v = (x - xs) / h\n",
         vector(center),
         vector(motion),
-        table(heading, rows),
+        table(["particle", "m", "s = xs - x_cm", "dx - dx_cm"], rows),
         short(momentum),
         short(inertia),
         short(momentum / inertia)

@@ -1,13 +1,13 @@
 //! One step of a trace, in words or as JSON.
 use super::super::{
     detect::polynomial,
-    number::exact,
     style::{Look, Style},
     table::{Align, Table},
     view::{SCHEMA, numbers},
 };
 use fosssim_judge::{PairWords, PassWords, Role};
 use fosssim_model::trace::{Frame, Label};
+use fosssim_num::printed::exact;
 use serde_json::{Value, json};
 
 /// A record of the step.

@@ -58,16 +58,10 @@ pub(super) struct Handler {
 impl Handler {
     /// Sets the scene's handling up.
     pub fn new(scene: &Scene, search: RootSearch) -> Self {
-        let restitution = match scene.collision {
-            Collision::Simple { restitution }
-            | Collision::ContinuousTime { restitution }
-            | Collision::Hybrid { restitution, .. } => restitution,
-            Collision::None | Collision::Penalty { .. } => 1.0,
-        };
         let is_simple = matches!(scene.collision, Collision::Simple { .. });
         Self {
             kind: scene.collision,
-            law: Law::new(restitution, scene.time_step),
+            law: Law::new(scene.collision.restitution(), scene.time_step),
             detector: Detector::new(search, scene.steps()),
             nearby: is_simple.then(|| NearbyPairs::for_many(scene, 0.0)).flatten(),
             hybrid: HybridScratch::default(),

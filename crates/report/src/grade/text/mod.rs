@@ -86,7 +86,7 @@ impl Text<'_> {
             let _ = writeln!(text, "{}", self.verdict(grade));
         }
         *text += &closing::render(self, grade, details.is_empty());
-        text.extend(grade.smallest.iter().map(|small| format!("\n{}", smallest::text(small, None, self.style))));
+        text.extend(grade.smallest.iter().map(|small| format!("\n{}", smallest::text(small, self.style))));
         text.push('\n');
     }
 

@@ -1,0 +1,123 @@
+//! The attempts to make a scene smaller: fewer parts, plainer features, rounder numbers.
+use crate::size::{NumberKind, numbers, set_steps};
+use fosssim_model::{
+    assignments::Assignment,
+    scene::{Collision, Force, Integrator, Scene},
+};
+use std::ops::Range;
+
+/// Returns a kind's `index`-th attempts, the best first; `None` behind the last ones.
+pub(crate) type Reduction = fn(&Scene, Assignment, usize) -> Option<Vec<Scene>>;
+
+/// All kinds, in the order in which they are tried.
+pub(crate) const REDUCTIONS: [Reduction; 4] = [remove_parts, simplify, move_and_round, round_number];
+
+/// Removes all parts but the first body, halves of them, then quarters, down to single ones. The parts are bodies,
+/// edges, half-planes and forces.
+fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
+    let count = scene.particles.len() + scene.edges.len() + scene.half_planes.len() + scene.forces.len();
+    let lengths = std::iter::successors(Some(count / 2), |length| Some(length / 2)).take_while(|length| *length > 0);
+    // From the end, so that the rest keeps its numbers as long as possible.
+    let ranges = lengths.flat_map(|length| (0..count).step_by(length).rev().map(move |start| start..start + length));
+    std::iter::once(1..count).chain(ranges).skip(index).map(|range| vec![without(scene, &range)]).next()
+}
+
+/// Returns a scene without these parts and all that depends on them: edges with their ends, forces with their bodies.
+fn without(scene: &Scene, parts: &Range<usize>) -> Scene {
+    let (mut scene, mut part) = (scene.clone(), 0..);
+    let mut stays = || part.next().is_some_and(|part| !parts.contains(&part));
+    let set = |new: &[Option<usize>], index: &mut usize| new[*index].inspect(|new| *index = *new).is_some();
+    let bodies = retain(&mut scene.particles, |_| stays());
+    let edges =
+        retain(&mut scene.edges, |edge| stays() && set(&bodies, &mut edge.first) && set(&bodies, &mut edge.second));
+    scene.half_planes.retain(|_| stays());
+    scene.forces.retain_mut(|force| {
+        stays()
+            && match force {
+                Force::Spring { edge, .. } => set(&edges, edge),
+                Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. } => {
+                    set(&bodies, first) && set(&bodies, second)
+                }
+                Force::SimpleGravity { .. } | Force::Constant { .. } | Force::Drag { .. } => true,
+            }
+    });
+    scene
+}
+
+/// Keeps some parts; returns the new number of each, if it has one.
+fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool) -> Vec<Option<usize>> {
+    let (mut numbers, mut next) = (Vec::new(), 0..);
+    parts.retain_mut(|part| {
+        numbers.push(stays(part).then(|| next.next()).flatten());
+        numbers.last().is_some_and(Option::is_some)
+    });
+    numbers
+}
+
+/// Makes one feature plainer, the greatest relief first; nothing that the assignment's library does not know.
+fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<Scene>> {
+    let with = |collision: Collision| Scene { collision, ..scene.clone() };
+    let mut all = Vec::new();
+    if let Collision::Hybrid { restitution, stiffness, thickness, .. } = scene.collision {
+        all.push(with(Collision::ContinuousTime { restitution }));
+        let few = [0, 1].map(|max_iterations| Collision::Hybrid { restitution, stiffness, thickness, max_iterations });
+        all.extend(few.map(with));
+    }
+    all.push(with(Collision::None));
+    let plain = [Integrator::ExplicitEuler, Integrator::SymplecticEuler, Integrator::LinearizedImplicitEuler];
+    let known = plain.into_iter().filter(|one| assignment.definition().library.integrators.contains(one));
+    all.extend(known.map(|integrator| Scene { integrator, ..scene.clone() }));
+    for body in 0..scene.particles.len() {
+        all.push(scene.clone());
+        all.last_mut()?.particles[body].fixed = false;
+    }
+    (index == 0).then_some(all)
+}
+
+/// Moves a body or a half-plane to the origin, makes bodies faster, so that numbers have room, and rounds all numbers.
+fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
+    let bodies = scene.particles.iter().map(|particle| particle.position);
+    let places = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);
+    let mut all = Vec::new();
+    for decimals in 0..=2 {
+        for (origin, factor) in places.clone().flat_map(|place| [1.0, 2.0, 10.0, 100.0].map(|factor| (place, factor))) {
+            let mut components = [origin.x, origin.y].into_iter().cycle();
+            all.push(map_numbers(scene, |kind, value| {
+                let value = match kind {
+                    NumberKind::Place => value - components.next().unwrap_or_default(),
+                    NumberKind::Velocity => value * factor,
+                    _ => value,
+                };
+                round(value, decimals)
+            }));
+        }
+    }
+    (index == 0).then_some(all)
+}
+
+/// Returns the scene with each number replaced.
+fn map_numbers(scene: &Scene, mut replace: impl FnMut(NumberKind, f64) -> f64) -> Scene {
+    let (mut scene, steps) = (scene.clone(), scene.steps());
+    numbers(&mut scene).into_iter().for_each(|(kind, value)| *value = replace(kind, *value));
+    set_steps(&mut scene, steps);
+    scene
+}
+
+/// Returns the number with this number of decimals, without the sign of a zero.
+fn round(value: f64, decimals: usize) -> f64 {
+    format!("{value:.decimals$}").parse().unwrap_or(value) + 0.0
+}
+
+/// Makes one number rounder, the roundest first.
+fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
+    let mut copy = scene.clone();
+    let (kind, value) = numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;
+    let plain = [kind.plain(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
+    let whole = [value.trunc(), value.trunc() + value.signum()];
+    let new = plain.into_iter().chain(whole).chain((0..=4).map(|decimals| round(value, decimals)));
+    let with = |new: f64| {
+        let mut number = 0..;
+        map_numbers(scene, |_, value| if number.next() == Some(index) { new } else { value })
+    };
+    Some(new.map(with).collect())
+}
