@@ -1,4 +1,4 @@
-//! `detect`: one pair in detail.
+//! Answers `detect` for one pair.
 use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
@@ -52,8 +52,8 @@ impl PairRequest {
     }
 }
 
-/// Examines a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
-/// once more for a page that has the style of plots.
+/// Examines a pair. The parts after the first are the outputs of `detect --format text`, `json` and `svg`, followed by
+/// the picture for a page with the style sheet of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.motion()?)
         .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;

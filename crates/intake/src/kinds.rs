@@ -1,4 +1,4 @@
-//! The kinds of files, found by their first bytes: nothing else of a submitted file is read for that.
+//! The kinds of files, found by their first bytes; no other bytes of a submitted file are read for that.
 
 /// The kind of a file, by its first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,25 +11,25 @@ pub enum FileKind {
     Other,
 }
 
-/// The archives that are unpacked.
+/// The archives that can be unpacked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ArchiveKind {
     /// A zip file.
     Zip,
     /// A tar file.
     Tar,
-    /// A tar file that gzip packed.
+    /// A tar file compressed by gzip.
     TarGz,
 }
 
-/// The archives that are unpacked, in words.
+/// The names of the archives that can be unpacked.
 pub const KNOWN: &str = ".zip, .tar.gz, .tar";
 
-/// The number of first bytes that show what a file is.
+/// The number of first bytes that determine the kind of a file.
 pub const START: usize = 512;
 
 impl FileKind {
-    /// Returns the kind of a file that begins with these bytes, at most [`START`] of them.
+    /// Returns the kind of a file that begins with `start`, which has at most [`START`] bytes.
     #[must_use]
     pub fn from_start(start: &[u8]) -> Self {
         match start {
@@ -42,7 +42,7 @@ impl FileKind {
     }
 }
 
-/// Describes a file that begins with these bytes, for a message about it.
+/// Returns a description of a file that begins with `start`, for messages.
 #[must_use]
 pub fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 17] = [

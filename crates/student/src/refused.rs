@@ -1,9 +1,8 @@
-//! Correct programs that the explanations are known to get wrong.
+//! Correct programs for which explanations are known to report mistakes.
 
-/// Correct variants that explanations accuse of something in some scene when called for them; the goal is an empty
-/// list.
+/// Correct variants for which explanations report a mistake in some scene; the list should become empty.
 pub const KNOWN_ACCUSED: &[&str] = &[
-    // More round-off than the explanations allow for, and then any formula will do.
+    // More round-off than the explanations allow for, so that any formula fits.
     "frame-shifted",
     "frame-comoving",
 ];

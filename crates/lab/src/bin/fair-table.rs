@@ -1,8 +1,9 @@
-//! The verdicts of both rule books on a corpus of submissions, one line each; `docs/rules/measurements.md` summarizes
-//! them.
+//! Prints the verdicts of both rule books on a corpus of submissions, one line each; `docs/rules/measurements.md`
+//! summarizes them.
 //!
 //! usage: `fair-table CORPUS [--all]`. The folder holds `verdicts.jsonl`, `scenes/` and `submissions/`. Without `--all`
-//! only rows where the two differ, and rows of correct kinds that fair rejects, are printed; the summary counts all.
+//! only rows with different verdicts, and rows of correct kinds that fair rejects, are printed. The summary counts all
+//! rows.
 #![forbid(unsafe_code)]
 use anyhow::Context;
 use fosssim_lab::{

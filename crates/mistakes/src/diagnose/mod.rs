@@ -1,7 +1,7 @@
-//! From findings to the likely mistake.
+//! Finds the likely mistake from findings.
 //!
-//! Knows nothing of processes and reports. It takes the steps of a trace that the fair rules find wrong, finds the
-//! mistake that reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make
+//! Does not use processes or reports. It takes the steps of a trace that the fair rules find wrong, finds the mistake
+//! that reproduces them, and returns [`Explanation`]s, the likeliest first. These are values, from which reports make
 //! sentences.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 

@@ -1,30 +1,30 @@
-//! Numbers as the strict reader wants them: the whole text must be one.
+//! Numbers for the strict reader: the whole text must be a number.
 //!
-//! Where the original takes the longest prefix and ignores the rest (scene-format.md 2), messages name what the
-//! original would have read. White space around a number is allowed.
+//! If the original reads the longest prefix and ignores the rest (scene-format.md 2), messages name what the original
+//! would have read. White space around a number is allowed.
 
-/// A flaw of a number.
+/// The reason why a text is not a valid number.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Flaw {
-    /// Nothing there.
+    /// The text is empty.
     Empty,
-    /// No digits at the start.
+    /// The text does not start with digits.
     NoNumber,
-    /// A number, then something else; with the number that the original would read.
+    /// Other characters follow the number. Holds the number that the original would read.
     Trailing(String),
-    /// A decimal comma; the same with a point.
+    /// The number has a decimal comma. Holds the text with a point.
     Comma(String),
-    /// `inf` or `nan`.
+    /// The text is `inf` or `nan`.
     NotFinite,
-    /// Too large for a 64-bit float.
+    /// The number is too large for a 64-bit float.
     Overflow,
-    /// A number with a point or an exponent where a whole one is needed.
+    /// The number has a point or an exponent where a whole number is required.
     NotWhole,
-    /// A whole number outside the 32-bit range.
+    /// The whole number is outside the 32-bit range.
     TooLarge,
 }
 
-/// Returns a finite 64-bit float, and whether a number other than zero became zero.
+/// Returns a finite 64-bit float, and whether a nonzero number became zero.
 pub(super) fn scalar(text: &str) -> Result<(f64, bool), Flaw> {
     let text = text.trim_ascii();
     let length = shape(text);
@@ -71,7 +71,7 @@ fn flaw(text: &str, length: usize) -> Flaw {
     }
 }
 
-/// Returns the number of bytes at the start that have the shape of a number; 0 without digits.
+/// Returns the number of leading bytes that have the form of a number; 0 without digits.
 fn shape(text: &str) -> usize {
     let bytes = text.as_bytes();
     let Some(end) = mantissa(bytes) else { return 0 };
@@ -85,7 +85,7 @@ fn shape(text: &str) -> usize {
     end
 }
 
-/// Returns the places at which a number's sign, digits and fraction end; `None` without digits.
+/// Returns the offsets at which a number's sign, digits and fraction end; `None` without digits.
 pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let whole = digits(text, sign);

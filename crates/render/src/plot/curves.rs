@@ -1,5 +1,5 @@
-//! Detection polynomials on the step, with the intervals in which each is positive and those in which all are: the
-//! assignment's figure 2.
+//! Plots detection polynomials on the step, with the intervals in which each is positive and those in which all are,
+//! like the assignment's figure 2.
 use super::{
     Embedding,
     sheet::{Anchor, Ink, Sheet, Tone, WIDTH},
@@ -7,16 +7,16 @@ use super::{
 use crate::number::short;
 use fosssim_num::{interval::Interval, polynomial::evaluate};
 
-/// A polynomial.
+/// A polynomial in the plot.
 #[derive(Debug, Clone)]
 pub struct PlottedPolynomial<'a> {
-    /// The polynomial's name, in a few words.
+    /// The polynomial's name, a few words long.
     pub name: String,
     /// The polynomial's coefficients, highest power first.
     pub coefficients: &'a [f64],
     /// The polynomial's real zeros.
     pub zeros: Vec<f64>,
-    /// The place where it is positive.
+    /// The intervals in which the polynomial is positive.
     pub positive: &'a [Interval],
 }
 
@@ -25,9 +25,9 @@ pub struct PlottedPolynomial<'a> {
 pub struct PolynomialPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// The polynomials; four styles distinguish them.
+    /// The polynomials, in one of four styles each.
     pub curves: &'a [PlottedPolynomial<'a>],
-    /// The intervals in which all are positive; `None` if they are not wanted, as for an expected and an actual
+    /// The intervals in which all are positive; `None` if they are not shown, as for an expected and an actual
     /// polynomial.
     pub common: Option<&'a [Interval]>,
     /// The time of impact.
@@ -88,7 +88,7 @@ impl PolynomialPlot<'_> {
         sheet.finish()
     }
 
-    /// Returns the plot in words, for readers who do not see it.
+    /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let mut words: Vec<String> = self
             .curves
@@ -109,15 +109,15 @@ fn x(time: f64) -> f64 {
     LEFT + time * (RIGHT - LEFT)
 }
 
-/// Draws a curve on `[0, 1]`, scaled to its largest modulus there: a positive factor moves no zero.
+/// Draws a curve on `[0, 1]`, scaled to its largest modulus; a positive factor moves no zero.
 fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
     let slopes = derivative(curve.coefficients);
     let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
     let y = |value: f64| if most > 0.0 { MIDDLE - value / most * (MIDDLE - TOP - 8.0) } else { MIDDLE };
-    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and for a quintic off by
-    // less than a thousandth of a pixel.
+    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and with an error below a
+    // thousandth of a pixel for a quintic.
     let mut path: Vec<[f64; 2]> = Vec::new();
     for k in (0..SAMPLES as usize).step_by(PIECE) {
         let (start, end) = (times[k], times[k + PIECE]);
@@ -155,7 +155,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Draws a row of bars: the parts of sets of time in `[0, 1]`; a single time is a diamond.
+/// Draws a row of bars for the parts of sets of time in `[0, 1]`; a single time is a diamond.
 fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));

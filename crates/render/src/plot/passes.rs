@@ -1,4 +1,4 @@
-//! The number of detection passes of each step: as expected, and as logged.
+//! Plots the number of detection passes of each step, as expected and as logged.
 use super::{
     Embedding,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone},
@@ -9,9 +9,9 @@ use super::{
 pub struct PassPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// Detection passes of each step, from the first one on, as the reference makes them.
+    /// The reference's number of detection passes of each step, from the first step on.
     pub expected: &'a [u32],
-    /// The numbers of the trace. `None` if its polynomials do not fill a whole number of passes.
+    /// The trace's numbers of passes; `None` if the polynomials do not fill a whole number of passes.
     pub actual: &'a [Option<u32>],
 }
 
@@ -42,7 +42,7 @@ impl PassPlot<'_> {
                 continue;
             }
             let x = columns.x(range.start);
-            // A step that differs represents its column.
+            // A step with a difference represents its column.
             let place = range.clone().find(|&place| self.differs(place));
             if place.is_some() {
                 differing.push(x);
@@ -73,7 +73,7 @@ impl PassPlot<'_> {
         }
     }
 
-    /// Returns the plot in words, for readers who do not see it.
+    /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
         let differing = (0..compared).filter(|&place| self.differs(place)).count();

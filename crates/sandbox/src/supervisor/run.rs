@@ -1,4 +1,4 @@
-//! One supervised run: start, watch, kill, report.
+//! Supervises one run: start, watch, kill, report.
 
 use std::{
     ffi::CString,
@@ -32,12 +32,12 @@ use crate::{
     wire::{self, Event, Failure, Report, RunOrder, stage},
 };
 
-/// The time between two checks of clocks and counters. A check costs some ten microseconds.
+/// The time between two checks of clocks and counters. A check takes about ten microseconds.
 const TICK: Duration = Duration::from_millis(10);
-/// Looking at the folder may cost this part of the time at most.
+/// The divisor that limits checks of the folder to a share of the total time.
 const FOLDER_SHARE: u32 = 20;
 
-/// Runs the order that comes on standard input and answers on standard output.
+/// Runs the order from standard input, and answers on standard output.
 pub(super) fn main() -> ExitCode {
     let streams = || -> io::Result<(File, File)> {
         Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
@@ -54,7 +54,7 @@ pub(super) fn main() -> ExitCode {
     })
 }
 
-/// Reports how it ended. Returns the supervisor's exit code: 0 if the grader has received the report.
+/// Reports how the run ended. Returns the supervisor's exit code: 0 if the grader has received the report.
 pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
     let sent = match finished {
         Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
@@ -66,16 +66,16 @@ pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut
     u8::from(sent.is_err())
 }
 
-/// A run that has begun, or the word that all is over.
+/// A run that has begun, or the result of a run in another process.
 enum SettledRun {
     Here(Box<Run>),
-    /// The end was another process's business, which ended with this code.
+    /// Another process has supervised the run and ended with this code.
     Elsewhere(u8),
 }
 
-/// Finds a user and a world for the run, and starts it there.
+/// Finds a user and sets up namespaces for the run, and starts it there.
 fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
-    // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader sends it the stop.
+    // In a separate session, the supervisor does not receive the terminal's Ctrl-C; the grader sends it the stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let held = HeldResources::take(&order)?;
     if order.walls.namespaces
@@ -86,17 +86,17 @@ fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     Run::start(order, control, held, &PreparedRun::default()).map(|run| SettledRun::Here(Box::new(run)))
 }
 
-/// The report, standard output and standard error.
+/// The report, the standard output and the standard error.
 pub(super) type FinishedRun = (Report, Vec<u8>, Vec<u8>);
 
-/// A program at work, seen from its supervisor.
+/// A running program, as seen by its supervisor.
 pub(super) struct Run {
     order: Rc<RunOrder>,
     control: File,
     folder: OwnedFd,
-    /// The trace's name in the folder.
+    /// The name of the trace in the folder.
     trace: Option<CString>,
-    /// The user that the program runs as, if it is its own, and who owned the folder before.
+    /// The program's own user, if it has one, and the previous owner of the folder.
     slot: Option<(slot::Slot, (u32, u32))>,
     /// The control group, if there is one.
     group: Option<Group>,
@@ -112,7 +112,7 @@ pub(super) struct Run {
     main_status: Option<i32>,
     cause: Option<RunEnd>,
     peak_memory: u64,
-    /// Memory that the last check of mappings found and that is resident for no process.
+    /// The memory that is resident for no process, at the last check of mappings.
     unseen_memory: u64,
     orphaned: bool,
 }
@@ -163,7 +163,7 @@ impl Run {
             Fork::Child => child::become_program(plan),
             Fork::Parent(pid) => pid,
         };
-        // The child's parts are closed here, so that the ends of pipes and sockets can be seen.
+        // The child's descriptors are closed here, so that the ends of pipes and sockets can be detected.
         drop(plan);
         Ok(Self {
             stdout: CapturedStream::new(stdout, order.limits.output_bytes).map_err(stage("read standard output"))?,
@@ -189,21 +189,21 @@ impl Run {
         })
     }
 
-    /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader has ended.
+    /// Watches until the program has ended or must end, ends everything, and reports. `None` if the grader has ended.
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.user();
-        // A grader that has ended shows as the end of the control pipe, too.
+        // The end of the control pipe also shows the end of a grader.
         let walls = self.order.walls;
         let session = (!walls.namespaces).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
-            // Processes that are left over, if any, are ended one by one.
+            // Remaining processes, if any, are ended one by one.
             let _ = group.kill();
         }
         if main_status.is_none() {
-            // Its number is its own until it is reaped.
+            // The process number is not reused until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
         let left = processes::end_all(user, walls.namespaces, |process| {
@@ -215,7 +215,7 @@ impl Run {
         self.stderr.take_rest();
         self.hear();
         let mut after = contents(&self.order, self.folder.as_fd());
-        // Most programs make no folders.
+        // Most programs create no folders.
         let shallow = match after.over || after.folders > 0 {
             true => {
                 let shallow = folder::open_up(self.folder.as_fd());
@@ -224,7 +224,7 @@ impl Run {
             }
             false => true,
         };
-        // Files that a submission leaves in memory are read only by root.
+        // Only root reads files that a submission leaves in memory.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
             folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
         }
@@ -234,7 +234,8 @@ impl Run {
         if self.orphaned {
             return Ok(None);
         }
-        // Most print nothing, and finding no message there is expensive: it asks the processor several things.
+        // Most programs print nothing, and searching for a message is expensive, because it queries the processor
+        // several times.
         let told = Some(&self.told[..]).filter(|told| !told.is_empty());
         let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
         let exec_errno = match failure {
@@ -242,7 +243,7 @@ impl Run {
             Some(failure) => return Err(failure),
             None => None,
         };
-        // A process that the kernel holds is the host's matter; any other that did not end has caused this itself.
+        // A process that the kernel blocks is the host's problem; the program has caused any other that did not end.
         self.blame_if(
             left.count > 0 && !left.held,
             RunEnd::Violation { call: "none, but it left processes that do not end".into() },
@@ -268,7 +269,7 @@ impl Run {
         Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
     }
 
-    /// Watches until the main process has ended or there is a cause to end it.
+    /// Watches until the main process has ended or there is a reason to end it.
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now() + TICK, Instant::now() + TICK);
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
@@ -302,8 +303,8 @@ impl Run {
             match found[4] {
                 Readiness::Idle => {}
                 Readiness::Ready => self.decide_announcement()?,
-                // No process is left under the filter: the kernel would report that immediately and repeatedly until
-                // the end is reaped.
+                // No process is left under the filter. The kernel would report that repeatedly until the process is
+                // reaped.
                 Readiness::HungUp => self.listener = None,
             }
             let now = Instant::now();
@@ -323,19 +324,19 @@ impl Run {
         Ok(())
     }
 
-    /// Returns the user that the program runs as, if it is its own.
+    /// Returns the program's own user, if it has one.
     fn user(&self) -> Option<u32> {
         self.slot.as_ref().map(|(slot, _)| slot.user)
     }
 
-    /// Notes the first cause.
+    /// Records the cause if it is the first.
     fn blame_if(&mut self, condition: bool, cause: RunEnd) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
     }
 
-    /// Obeys commands of the grader; the end of its pipe is the end of the grader.
+    /// Executes commands of the grader. The end of its pipe means that the grader has ended.
     fn obey(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
@@ -344,7 +345,7 @@ impl Run {
         }
     }
 
-    /// Reads the child's messages; the end of the socket means that the program has started.
+    /// Reads the child's messages. The end of the socket means that the program has started.
     fn hear(&mut self) {
         let mut buffer = [0; 4096];
         while let Some(status) = &self.status {
@@ -357,7 +358,7 @@ impl Run {
         }
     }
 
-    /// Decides about a forbidden call that waits: either it starts the program, or the program ends.
+    /// Decides about a waiting forbidden call: it either starts the program, or ends the run.
     fn decide_announcement(&mut self) -> io::Result<()> {
         let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
             return Ok(());
@@ -392,7 +393,7 @@ impl Run {
             _ => None,
         };
         if let Some(answer) = answer {
-            // The caller may have been killed meanwhile; then no process waits for this answer.
+            // Answering fails if the caller has been killed, which does not matter.
             let _ = sys::answer(listener.as_fd(), announced.id, answer);
             return Ok(());
         }
@@ -432,7 +433,7 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        // A bomb of processes passes both.
+        // A fork bomb exceeds both limits.
         self.blame_if(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
         self.blame_if(memory > self.order.limits.memory, RunEnd::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
@@ -441,15 +442,15 @@ impl Run {
         self.blame_if(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
-    /// Returns whether the file at the trace's place is longer than a trace may be.
+    /// Returns whether the file with the trace's name is longer than a trace may be.
     fn is_trace_over(&self) -> bool {
         let opened = self.trace.as_ref().map(|name| sys::open_beneath(self.folder.as_fd(), name, OFlags::PATH));
         let metadata = opened.and_then(|opened| File::from(opened.ok()?).metadata().ok());
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
-    /// Returns the group's processor time, if there may be processes that are not reaped. A single process's own count
-    /// is complete, and its group may have served earlier runs.
+    /// Returns the group's processor time, if there may be unreaped processes. The count of a single process is
+    /// complete, and its group may have served earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
@@ -479,13 +480,13 @@ impl Run {
         self.blame_if(over, RunEnd::FolderLimit);
     }
 
-    /// Returns whether there may be memory that is resident for no process: files that are neither in the folder nor
-    /// denied by rules.
+    /// Returns whether there may be memory that is resident for no process: files outside the folder that no rules
+    /// deny.
     fn can_hide_memory(&self) -> bool {
         self.order.tools || self.order.sanitizers || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
-    /// Returns whether there may be other processes than the main one. Without the filter every program can start some.
+    /// Returns whether there may be processes other than the main one. Without the filter every program can start some.
     fn has_children(&self) -> bool {
         self.order.tools || !self.order.walls.seccomp
     }
@@ -501,14 +502,14 @@ fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
 }
 
-/// Gives the working folder to the run's own user, and returns its former owner.
+/// Changes the owner of the working folder to the run's own user, and returns the previous owner.
 fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
     folder::give(folder, user, user)?;
     Ok((owner.uid(), owner.gid()))
 }
 
-/// Returns the number of the descriptor by which alone the program can be executed, where only the filter decides that.
+/// Returns the descriptor number from which alone the program can be executed, if only the filter decides that.
 fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);
@@ -519,7 +520,7 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
     entrance.map(Some).map_err(stage("open the program once more"))
 }
 
-/// Sends the grader the folder.
+/// Sends the folder to the grader.
 fn hand_over(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
     sys::send_descriptors(&socket, wire::FOLDER, [folder])

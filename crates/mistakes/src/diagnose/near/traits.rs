@@ -1,16 +1,16 @@
-//! The traits by which pairs that a search loses, or doubles, may differ from the others: one row each.
+//! The traits by which omitted or doubled pairs may differ from others, one row each.
 use super::geometry::{BoundingBox, PlacedPair};
 use fosssim_model::sim::{PairKind, State};
 use fosssim_num::vector::{Vec2, length};
 
-/// A row of the table.
+/// A row of the trait table.
 pub(super) struct TraitRow {
-    /// The trait in plain words, behind "in all of them"; `{axis}` is horizontally or vertically.
+    /// The trait in plain words, after "in all of them"; `{axis}` is "horizontally" or "vertically".
     what: &'static str,
     /// The trait's exact form; `{axis}` is x or y, `{n}` a number.
     exact: &'static str,
     axes: &'static [TraitAxis],
-    /// The numbers with which it is tried, the strictest last.
+    /// The numbers with which the trait is tried, the strictest last.
     numbers: &'static [f64],
     holds: fn(&PlacedPair<'_>, usize, f64) -> bool,
 }
@@ -29,11 +29,11 @@ fosssim_num::closed_set! {
         Y = "vertically", "y";
         Either = "horizontally or vertically", "x or y";
     }
-    /// Returns the axis as a letter of formulas.
+    /// Returns the axis as a letter in formulas.
     letter
 }
 
-/// A row with its axis and its number.
+/// A row with an axis and a number.
 #[derive(Clone, Copy)]
 pub(super) struct Variant {
     pub row: &'static TraitRow,
@@ -67,7 +67,7 @@ pub(super) fn variants() -> impl Iterator<Item = Variant> {
     })
 }
 
-/// The axis of traits that are about no axis.
+/// The axes of traits that do not depend on an axis.
 const NO_AXIS: &[TraitAxis] = &[TraitAxis::X];
 const ONE_AXIS: &[TraitAxis] = &[TraitAxis::X, TraitAxis::Y];
 const ANY_AXIS: &[TraitAxis] = &[TraitAxis::Either, TraitAxis::X, TraitAxis::Y];
@@ -76,13 +76,13 @@ const COUNTS: &[f64] =
     &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 16.0, 20.0, 32.0, 50.0, 64.0, 100.0, 128.0];
 const FACTORS: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0];
 const SHARES: &[f64] = &[0.9, 0.75, 0.5, 0.25, 0.1];
-/// Steps before.
+/// The numbers of earlier steps.
 const STEPS: &[f64] = &[16.0, 8.0, 4.0, 2.0, 1.0];
 const LENGTHS: &[f64] = &[0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
 
 macro_rules! traits {
     ($($axes:ident $numbers:ident $what:literal $exact:literal $holds:expr;)*) => {
-        /// The table; of rows that distinguish pairs equally well, the first ones are reported.
+        /// The table of traits. If rows distinguish pairs equally well, the first ones are reported.
         const TRAITS: &[TraitRow] = &[$(TraitRow {
             what: $what, exact: $exact, axes: $axes, numbers: $numbers, holds: $holds,
         },)*];
@@ -188,18 +188,18 @@ traits! {
     };
 }
 
-/// Returns the particles that are bodies of the pair.
+/// Returns the particles that are themselves bodies of the pair.
 fn particles_of(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     let bodies = if pair.pair.kind == PairKind::ParticleParticle { 2 } else { 1 };
     pair.numbers().into_iter().take(bodies)
 }
 
-/// Returns all particles that take part, ends of an edge, too.
+/// Returns all particles of the pair, including the ends of an edge.
 fn particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     particles_of(pair).chain(pair.edge().into_iter().flat_map(|edge| [edge.first, edge.second]))
 }
 
-/// Returns the places of bodies a number of steps before, had they moved as they do now.
+/// Returns the positions of bodies a number of steps earlier, if they had moved with their current velocities.
 fn earlier(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
     let State { positions, velocities } = pair.moment.before;
     let h = pair.moment.scene.time_step;
@@ -219,7 +219,7 @@ fn distance([one, other]: [usize; 2]) -> f64 {
     one.abs_diff(other) as f64
 }
 
-/// Returns whether points are in different cells on an axis; with infinite cells, on two sides of the start.
+/// Returns whether points are in different cells on an axis; with infinite cells, on different sides of the start.
 fn are_split([one, other]: [Vec2; 2], axis: usize, size: f64, start: f64) -> bool {
     ((one[axis] - start) / size).floor() != ((other[axis] - start) / size).floor()
 }
@@ -235,19 +235,19 @@ fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
     pair.boxes_between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
 }
 
-/// Returns the part of an axis that two boxes have in common.
+/// Returns the overlap of two boxes on an axis.
 fn common_range([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
     [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
 }
 
-/// Returns how much the boxes overlap on an axis, as a share of the smaller box.
+/// Returns the length of the boxes' overlap on an axis, as a share of the smaller box.
 fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
     let [from, to] = common_range(pair.boxes(), axis);
     let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);
     (to - from) / sides[0].min(sides[1])
 }
 
-/// Returns the distance of the particle from the edge's ends, in sums of the radii.
+/// Returns the distances of the particle from the edge's ends, in units of the sum of radii.
 fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
     let edge = pair.edge()?;
     let reach = pair.radius() + pair.other_radius();

@@ -1,5 +1,5 @@
-//! Slips, the small changes with which quantities of a program go wrong: the same few everywhere.
-/// The table: each slip with the words of a sentence about it, behind the quantity's name.
+//! Slips, which are small changes that make quantities of a program wrong. The same few slips apply everywhere.
+/// The table of slips, each with its part of a sentence, which follows the quantity's name.
 macro_rules! slips {
     ($($(#[$about:meta])* $slip:ident$(($by:ty))? $words:literal;)*) => {
         /// A small change of a quantity. A row of the catalogue is a slip in a [quantity](super::Term).
@@ -7,7 +7,7 @@ macro_rules! slips {
         pub enum Slip { $(#[doc = $words] $(#[$about])* $slip$(($by))?,)* }
 
         impl Slip {
-            /// Returns the words that fit any quantity.
+            /// Returns the part of a sentence about the slip that fits any quantity.
             pub(super) const fn describe(self) -> &'static str {
                 match self { $(Self::$slip { .. } => $words,)* }
             }
@@ -25,11 +25,11 @@ slips! {
     Squared "grows with the square of the stretch or depth, whatever its sign";
     SquaredHalf "is half of a square, as it is in the energy";
     SquaredAway "grows with the square of the depth";
-    /// Multiplied by this power of the mass.
+    /// Multiplies the term by this power of the mass.
     Mass(i8) "has another factor";
-    /// Multiplied by this power of the step size.
+    /// Multiplies the term by this power of the step size.
     Step(i8) "has another factor";
-    /// Multiplied by this power of the distance.
+    /// Multiplies the term by this power of the distance.
     Length(i8) "has another factor";
     FirstMass "is multiplied by the mass of the first of its two bodies";
     MassOfFirst "has the mass of the first particle for all";
@@ -54,9 +54,9 @@ slips! {
     RowsOfFixed "leaves the rows and columns of fixed particles in its matrix";
     DiagonalOfFixed "sets the diagonal for fixed particles, but does not clear their rows and columns";
     RightOfFixed "leaves the entries of fixed particles in its right-hand side";
-    /// Newton's method ends after this many iterations.
+    /// Newton's method ends after this number of iterations.
     Iterations(u8) "ends after a fixed number of iterations";
-    /// Newton's method ends at a change below ten to minus this.
+    /// Newton's method ends at a change below ten to the power of minus this.
     Loose(i8) "ends too early, at a larger change than the assignment asks for";
     OtherVelocity "has the old velocity instead of the new one";
     MeanVelocity "has the mean of the old and the new velocity";
@@ -101,26 +101,26 @@ slips! {
     OneEnd "forgets the second end of the edge";
 }
 
-/// The slips of everything that is added to a sum.
+/// The slips of quantities that are added to a sum.
 pub(super) const SUM: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::Doubled, Slip::Halved];
-/// Slips of a vector.
+/// The slips of a vector.
 pub(super) const VECTOR: &[Slip] = &[Slip::XOnly, Slip::YOnly, Slip::Exchanged];
-/// Slips of what each particle gets.
+/// The slips of quantities for each particle.
 pub(super) const EACH: &[Slip] = &[Slip::FirstOut, Slip::LastOut, Slip::OnlyFirst];
-/// Slips of the force on each particle.
+/// The slips of the force on each particle.
 pub(super) const FORCE: &[Slip] = &[Slip::Assigned, Slip::Mass(1), Slip::Mass(-1), Slip::Step(1)];
-/// Slips of what two bodies get.
+/// The slips of quantities for two bodies.
 pub(super) const PAIR: &[Slip] = &[Slip::FirstOnly, Slip::SecondOnly, Slip::SameSign];
-/// Slips of the number before a direction.
+/// The slips of the factor of a direction.
 pub(super) const NUMBER: &[Slip] = &[Slip::Absolute, Slip::Squared, Slip::SquaredHalf, Slip::FirstMass];
-/// Slips of what depends on the distance.
+/// The slips of quantities that depend on the distance.
 pub(super) const DISTANCE: &[Slip] = &[Slip::Length(1), Slip::Length(2), Slip::Length(-1)];
-/// Slips of blocks of a matrix of two bodies.
+/// The slips of matrix blocks for two bodies.
 pub(super) const BLOCKS: &[Slip] =
     &[Slip::DiagonalOnly, Slip::OffDiagonalSign, Slip::OneHalf, Slip::FirstOnly, Slip::SecondOnly, Slip::Assigned];
 
 impl Slip {
-    /// Returns whether bodies at which nothing should act stay without any effect.
+    /// Returns whether bodies without a force stay unaffected.
     pub fn keeps_distance(self) -> bool {
         use Slip::{Always, EndRadius, Middle, Mirrored, Negated, ToPoint, Unclamped, Undivided};
         !matches!(self, Always | EndRadius | Middle | Mirrored | Negated | ToPoint | Unclamped | Undivided)

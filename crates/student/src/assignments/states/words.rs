@@ -3,7 +3,7 @@ use super::{slips::Slip, terms::TermRow};
 use crate::assignments::rows::Area;
 
 impl Slip {
-    /// Returns the slip's part of a row's name.
+    /// Returns the slip's part of a row's id.
     pub(super) fn id(self) -> String {
         let power = |name: &str, power: i8| match power {
             1 => name.to_owned(),
@@ -30,7 +30,7 @@ impl Slip {
         }
     }
 
-    /// Returns the words of a sentence about it, behind the quantity's name.
+    /// Returns the part of a sentence about the slip, which follows the quantity's name.
     pub(super) fn predicate(self, of: &TermRow) -> String {
         let text = match self {
             Self::Missing if of.is_function => match of.area() {
@@ -65,7 +65,7 @@ impl Slip {
         text.to_owned()
     }
 
-    /// Returns the exact form of a quantity with this formula, which should be there without it.
+    /// Returns the exact form of the slip: the changed and the right formula of the quantity.
     pub(super) fn exact(self, of: &TermRow) -> String {
         let formula = of.formula;
         let with = |factor: &str| format!("{factor} ({formula}) is used instead of {formula}.");
@@ -93,7 +93,7 @@ impl Slip {
     }
 }
 
-/// Returns the meaning of a further power of a factor that has this power already.
+/// Returns the description of a further power `by` of a factor that has the power `has`.
 fn power(has: i8, by: i8, factor: &str) -> String {
     match (has.signum(), (has + by).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),

@@ -1,5 +1,5 @@
-//! Misunderstandings of formulas that have a name: right formulas of wrong inputs, such as positions at the end of the
-//! step, a displacement forgotten, radii squared apart, and formulas of their own.
+//! Misunderstandings of formulas that have a name: right formulas with wrong inputs, such as positions at the end of
+//! the step, a missing displacement, or radii squared separately, and wrong formulas.
 use super::{
     Inputs, Subject,
     edits::{
@@ -17,7 +17,7 @@ const PE: PairKind = PairKind::ParticleEdge;
 const PH: PairKind = PairKind::ParticleHalfPlane;
 const NOTHING: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
 
-/// Positions at the end of the step.
+/// Returns the positions at the end of the step.
 fn ends(inputs: &Inputs) -> [BoundedVector; 3] {
     std::array::from_fn(|body| inputs.x[body] + inputs.d[body])
 }
@@ -26,19 +26,19 @@ fn square(value: BoundedValue) -> BoundedValue {
     value * value
 }
 
-/// Leaves one component of all vectors out.
+/// Removes one component from all vectors.
 fn without(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
     inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::exact(0.0));
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
 
-/// Finds the change with this key.
+/// Returns the change with the given key.
 #[must_use]
 pub fn find_edit(key: &str) -> Option<&'static NamedEdit> {
     NAMED_EDITS.iter().find(|edit| edit.key == key)
 }
 
-/// The table: name, key, kinds of pairs, how unlikely it is, and the change; the sentence; the exact form.
+/// The table of named edits: name, key, kinds of pairs, cost, and the change; the sentence; the exact form.
 macro_rules! named_edits {
     ($($name:ident $key:literal $kinds:tt $cost:literal: $edit:expr => $sentence:literal => $detail:literal;)*) => {
         $(#[doc = $sentence]
@@ -51,7 +51,7 @@ macro_rules! named_edits {
             edit: $edit,
         };)*
 
-        /// All of them.
+        /// All named edits.
         pub const NAMED_EDITS: &[NamedEdit] = &[$($name,)*];
     };
 }

@@ -15,7 +15,7 @@ use crate::sim::{
 use fosssim_num::lanes::{Lanes, MOST_LANES, Simd, Work};
 use std::ops::Range;
 
-/// The pairs from a place on, up to the next hit.
+/// The pairs from a position on, up to the next hit.
 pub(super) struct Pairs<'a> {
     pub lists: &'a Lists,
     pub group: &'a mut Group,
@@ -25,7 +25,7 @@ pub(super) struct Pairs<'a> {
     pub bytes: Option<&'a mut PolynomialBytes>,
 }
 
-/// Room for the rows of a block of particles.
+/// Memory for the rows of a block of particles.
 type Rows = [f64; TWO_ROW * MOST_LANES];
 
 impl Work for Pairs<'_> {
@@ -61,8 +61,8 @@ impl Work for Pairs<'_> {
 }
 
 impl Pairs<'_> {
-    /// Computes the rest of the pairs of one particle. Whether something was found, which the output holds; at a hit
-    /// the place is the next pair's.
+    /// Computes the rest of the pairs of one particle. Returns whether the output holds a result; after a hit the
+    /// position is that of the next pair.
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
         let first = self.place.first;
@@ -77,7 +77,7 @@ impl Pairs<'_> {
         self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
     }
 
-    /// Decides about a particle and those of these edges of which it is no end.
+    /// Decides the pairs of a particle with the edges `seconds`, except those that end in it.
     #[inline(always)]
     fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
@@ -99,7 +99,7 @@ impl Pairs<'_> {
         false
     }
 
-    /// Decides about a particle and these half-planes.
+    /// Decides the pairs of a particle with the half-planes `seconds`.
     #[inline(always)]
     fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
@@ -114,7 +114,7 @@ impl Pairs<'_> {
         false
     }
 
-    /// Decides about a particle and these particles.
+    /// Decides the pairs of a particle with the particles `seconds`.
     #[inline(always)]
     fn particles<S: Simd>(
         &mut self,
@@ -144,8 +144,8 @@ impl Pairs<'_> {
     }
 }
 
-/// Decides about a pair with an edge, where that is open, and writes its polynomials. Whether something was found,
-/// which the output holds.
+/// Decides a pair with an edge, if the certificate left it open, and writes its polynomials. Returns whether the output
+/// holds a result.
 #[inline(always)]
 fn compute_edge(
     pair: Pair,
@@ -163,7 +163,8 @@ fn compute_edge(
     ends
 }
 
-/// Decides about a pair of particles, or with a half-plane.
+/// Decides a particle-particle or particle-half-plane pair and writes its polynomials. Returns whether the output holds
+/// a result.
 #[inline(always)]
 fn compute_two(
     pair: Pair,

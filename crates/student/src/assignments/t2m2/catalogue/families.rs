@@ -1,5 +1,5 @@
-//! Tests that the catalogue is closed under the assignment's symmetries: a mistake with one kind of pair, one end, one
-//! place or one quantity exists for the others, or a reason here says why not.
+//! Tests that the catalogue is closed under the assignment's symmetries. A mistake with one kind of pair, one end, one
+//! place or one quantity exists for the others, or a reason is given here.
 use super::CATALOGUE;
 use crate::assignments::{
     all::find,
@@ -7,11 +7,11 @@ use crate::assignments::{
 };
 use std::collections::BTreeSet;
 
-/// The contents of one place of a family.
+/// The contents of one cell of a family.
 enum FamilyCell {
-    /// A row with this id.
+    /// The row with this id.
     Is(&'static str),
-    /// No row, because of this.
+    /// No row, for this reason.
     None(&'static str),
 }
 
@@ -19,9 +19,9 @@ use FamilyCell::{Is, None as No};
 
 /// Rows that differ in one respect.
 struct MistakeFamily {
-    /// The sides, in the order of the cells.
+    /// The names of the columns, in the order of the cells.
     sides: &'static [&'static str],
-    /// The mistakes, for each side.
+    /// The mistakes, with one cell per column.
     rows: &'static [(&'static str, &'static [FamilyCell])],
 }
 
@@ -251,7 +251,7 @@ const SUMS: MistakeFamily = MistakeFamily {
 
 const FAMILIES: [&MistakeFamily; 7] = [&PAIRS, &ENDS, &ALPHAS, &PLACES, &QUANTITIES, &ROUNDS, &SUMS];
 
-/// Rows of one kind of pair alone, by how their ids begin, and why they are alone.
+/// Prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
 const ALONE: &[(&str, &str)] = &[
     ("pe-quartic-", "a product of the quartic"),
     ("pe-cubic-", "a product of the quartic"),
@@ -308,7 +308,7 @@ fn every_cell_is_a_row_or_has_its_reason() {
     }
 }
 
-/// A new row of one kind of pair needs its place in a family, and so its likes for the other kinds.
+/// A new row of one kind of pair must be in a family, together with the rows of the other kinds.
 #[test]
 fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let known: BTreeSet<&str> =
