@@ -16,19 +16,19 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 
 /// The maximum number of numbers that are kept of a motion; the largest course scene has 70,444.
-const MOST_NUMBERS: usize = 1 << 24;
+const MAX_NUMBERS: usize = 1 << 24;
 
 /// The maximum size of a trace that is created at once, in bytes.
-const LONGEST_TRACE: usize = 1 << 30;
+const MAX_TRACE_BYTES: usize = 1 << 30;
 
 /// The number of pictures above which a film omits some, like films of the command line.
-const LONG_FILM: u32 = 1500;
+const MAX_PICTURES: u32 = 1500;
 
 /// The pictures per second of a film.
-const RATE: u16 = 25;
+const PICTURES_PER_SECOND: u16 = 25;
 
 /// The number of steps between two reports of progress.
-const NEWS: u32 = 64;
+const STEPS_PER_REPORT: u32 = 64;
 
 /// A request for a picture of the motion.
 #[derive(Debug, Deserialize)]
@@ -109,7 +109,7 @@ impl Film {
         let start = Extent::for_scene(&scene, &positions);
         let (mut extent, mut steps, mut stopped) = (start, 0, None);
         for step in 1..=scene.steps() {
-            if positions.len() + 2 * scene.particles.len() > MOST_NUMBERS {
+            if positions.len() + 2 * scene.particles.len() > MAX_NUMBERS {
                 stopped = Some(format!("it is too long to be shown from step {step} on"));
                 break;
             }
@@ -120,7 +120,7 @@ impl Film {
             extent.add(&scene, &simulation.state().positions);
             positions.extend(&simulation.state().positions);
             steps = step;
-            if step % NEWS == 0 {
+            if step % STEPS_PER_REPORT == 0 {
                 host.progress(step, scene.steps());
             }
         }
@@ -176,8 +176,8 @@ impl Film {
     /// Returns all pictures as a film, like `render`.
     pub(crate) fn film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
-        let rate = Rate::new(RATE).ok_or("no such rate")?;
-        let every = self.steps.div_ceil(LONG_FILM).max(1);
+        let rate = Rate::new(PICTURES_PER_SECOND).ok_or("no such rate")?;
+        let every = self.steps.div_ceil(MAX_PICTURES).max(1);
         let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size, true), Raster::new(size), Vec::new());
         let (background, colors) = (painter.background(), painter.colors());
@@ -210,7 +210,7 @@ impl Film {
             if recorder.has_failed() {
                 break;
             }
-            if step % NEWS == 0 {
+            if step % STEPS_PER_REPORT == 0 {
                 host.progress(step, self.scene.steps());
             }
         }
@@ -226,7 +226,7 @@ struct TraceRoom(Vec<u8>);
 
 impl Write for TraceRoom {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.0.len() + bytes.len() > LONGEST_TRACE {
+        if self.0.len() + bytes.len() > MAX_TRACE_BYTES {
             return Err(io::Error::other("too long"));
         }
         self.0.extend(bytes);

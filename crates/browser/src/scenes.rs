@@ -15,7 +15,7 @@ use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
 /// The length of the longest first record, except in scenes that are too large to be dropped.
-const LONGEST_RECORD: u64 = 1 << 16;
+const MAX_RECORD_BYTES: u64 = 1 << 16;
 
 /// Lists the scenes' names by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
@@ -44,7 +44,7 @@ pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
 pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
     // The message of an error is in `fault`.
-    let _ = open(host, file, &fault).take(LONGEST_RECORD).read_to_end(&mut start);
+    let _ = open(host, file, &fault).take(MAX_RECORD_BYTES).read_to_end(&mut start);
     if let Some(why) = fault.get() {
         return Err(format!("cannot read the trace: {why}"));
     }

@@ -5,7 +5,7 @@ use crate::{
 };
 use fosssim_judge::{
     Outcome,
-    kept::{KeptTrace, LONGEST},
+    kept::{KeptTrace, MAX_KEPT_BYTES},
     replay::{self, BothObservers, Options, Progress},
 };
 use fosssim_mistakes::diagnose::{Explanation, explain_kept};
@@ -46,11 +46,11 @@ pub fn examine<'a, R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> ExaminedTrace<'a> {
-    let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { LONGEST });
+    let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { MAX_KEPT_BYTES });
     let mut rulings = StepRulings::default();
     let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut BothObservers(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
-        let room = (LONGEST - kept.bytes().len()) as u64;
+        let room = (MAX_KEPT_BYTES - kept.bytes().len()) as u64;
         // An error ends the kept part.
         let _ = io::copy(&mut kept.reader(trace.take(room)), &mut io::sink());
     }

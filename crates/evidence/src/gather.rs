@@ -13,7 +13,7 @@ use fosssim_model::{
 use std::io::Read;
 
 /// The maximum number of steps with details, and of numbers in their expected states; large scenes have fewer steps.
-const CLOSE_UPS: usize = 12;
+const MAX_INSPECTED_STEPS: usize = 12;
 const NUMBERS: usize = 40_000;
 
 /// The distance of a coordinate, in scene units, above which a motion differs from the reference's.
@@ -270,7 +270,7 @@ impl<'a> Gathering<'a> {
 /// Returns the steps shown in detail: those of findings, and those around the first wrong step; of many, the most
 /// important ones.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
-    let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, CLOSE_UPS));
+    let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
     for step in near.chain(focus.iter().map(|focus| focus.step)) {

@@ -8,14 +8,14 @@ use fosssim_model::{
 };
 
 /// The maximum number of kept passes of a step, and of numbers in their positions; large scenes have fewer passes.
-const PASSES: usize = 24;
+const MAX_PASSES: usize = 24;
 const POSITIONS: usize = 12_000;
 /// The maximum number of kept pairs of a pass, for each of differing, missing and repeated ones.
-const PAIRS: usize = 256;
+const MAX_PAIRS: usize = 256;
 /// The maximum number of kept calls of a step, in case the trace has logged another number of polynomials.
-const CALLS: usize = 1 << 14;
+const MAX_CALLS: usize = 1 << 14;
 /// The maximum number of wrong or missing calls that are shown without a finding.
-const SHOWN: usize = 2;
+const MAX_SHOWN_CALLS: usize = 2;
 
 /// A detection pass of the reference.
 #[derive(Debug, Clone, PartialEq)]
@@ -132,7 +132,7 @@ pub(crate) struct Inspector<'a> {
     log: Option<&'a PolynomialLog>,
     wanted: &'a [(WantedCalls, Pair)],
     pass: Option<Pass>,
-    /// The calls and their polynomials, at most [`CALLS`].
+    /// The calls and their polynomials, at most [`MAX_CALLS`].
     asked: Vec<AskedCall>,
     right: PolynomialLog,
     /// The number in the step of each inspected call, and the index of its first polynomial.
@@ -160,7 +160,7 @@ impl<'a> Inspector<'a> {
     }
 
     fn most_passes(&self) -> usize {
-        (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, PASSES)
+        (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, MAX_PASSES)
     }
 
     /// Returns the inspected step, with the trace's log of each call.
@@ -262,9 +262,9 @@ impl<'a> Inspector<'a> {
         };
         let up = &self.step.passes[pass];
         let wrong: Vec<Pair> = [up.missing.first(), up.differing.first()].into_iter().flatten().copied().collect();
-        for pair in wrong.into_iter().take(SHOWN) {
+        for pair in wrong.into_iter().take(MAX_SHOWN_CALLS) {
             let is_shown = |call: &InspectedCall| call.pair == pair && call.pass == self.step.passes[pass].pass;
-            if self.step.calls.len() >= SHOWN || self.step.calls.iter().any(is_shown) {
+            if self.step.calls.len() >= MAX_SHOWN_CALLS || self.step.calls.iter().any(is_shown) {
                 continue;
             }
             let Some(asked) = self.asked.iter().find(|asked| asked.number == pass && asked.pair == pair) else {
@@ -298,7 +298,7 @@ fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: u
 }
 
 fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
-    if pairs.len() < PAIRS {
+    if pairs.len() < MAX_PAIRS {
         pairs.push(pair);
     }
 }
@@ -360,7 +360,7 @@ impl Observer for Inspector<'_> {
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
             self.places.push((self.calls - 1, first));
         }
-        if self.asked.len() < CALLS {
+        if self.asked.len() < MAX_CALLS {
             let number = self.step.expected_passes - 1;
             self.asked.push(AskedCall { pass, number, pair, motion: motion(), first, count });
             detection.polynomials.iter().for_each(|polynomial| self.right.push(polynomial.coefficients()));

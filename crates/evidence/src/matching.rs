@@ -7,7 +7,7 @@
 use fosssim_model::trace::PolynomialLog;
 
 /// The maximum number of pairs of polynomials that are compared.
-const CELLS: usize = 4 << 20;
+const MAX_COMPARISONS: usize = 4 << 20;
 
 /// The costs of an omitted or inserted polynomial, and of a wrong one.
 const GAP: u32 = 2;
@@ -15,7 +15,7 @@ const WRONG: u32 = 3;
 
 /// The deviation of coefficients, relative to their polynomial's largest, above which a call is marked as differing. A
 /// mark is not a verdict; with a larger value, small differences are not marked.
-const MARKED: f64 = 1e-9;
+const MARKED_DEVIATION: f64 = 1e-9;
 
 /// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong; `None` if the
 /// lists are too long to be compared.
@@ -30,7 +30,7 @@ pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Opti
         found[rows - 1 - back] = Some(columns - 1 - back);
     }
     let (tall, wide) = (rows - head - tail, columns - head - tail);
-    if tall.checked_mul(wide)? > CELLS {
+    if tall.checked_mul(wide)? > MAX_COMPARISONS {
         return None;
     }
     let mut cells = vec![0_u8; tall * wide];
@@ -78,13 +78,13 @@ pub(crate) fn differ(own: &[f64], right: &[f64]) -> bool {
     // The course's library may have dropped leading coefficients of one and not of the other; they are then small.
     let (excess, own) = own.split_at(own.len().saturating_sub(right.len()));
     let (missing, right) = right.split_at(right.len() - own.len());
-    let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED * size);
+    let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED_DEVIATION * size);
     if !(small(excess, most) && small(missing, scale)) {
         return true;
     }
     let place = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
     let factor = own[place] / right[place];
-    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED * (factor * scale).abs();
+    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED_DEVIATION * (factor * scale).abs();
     !(factor > 0.0 && own.iter().zip(right).all(near))
 }
 

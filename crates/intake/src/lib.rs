@@ -39,12 +39,12 @@ pub struct ArchiveLimits {
 }
 
 /// The maximum depth of folders.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 
 /// The maximum size of an archive's list of files, in bytes. A list of 20,000 usual names has 4 MiB.
-const LONGEST_LIST: u64 = 16 << 20;
+const MAX_LIST_BYTES: u64 = 16 << 20;
 /// The maximum size of an archive's data about a single file in addition to its contents, in bytes.
-const LONGEST_HEADER: u64 = 1 << 20;
+const MAX_HEADER_BYTES: u64 = 1 << 20;
 
 /// The number of bytes that may be read for a file in addition to its contents: headers, padding, and read-ahead.
 const BESIDE: u64 = 64 << 10;
@@ -85,7 +85,7 @@ pub enum ArchiveError {
     #[error("the archive holds more than {0} bytes when it is unpacked")]
     Bytes(u64),
     /// The archive's folders are nested too deeply.
-    #[error("the archive has folders that are nested more than {DEEPEST} deep: {0}")]
+    #[error("the archive has folders that are nested more than {MAX_DEPTH} deep: {0}")]
     Depth(String),
     /// The archive file cannot be read, which is not the archive's fault.
     #[error("cannot read the archive: {0}")]
@@ -169,11 +169,11 @@ fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
 /// archives (4.3.14) if the end record refers to it.
 fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     /// The size of both records, the pointer between them, and the longest comment after them.
-    const LONGEST: u64 = 56 + 20 + 22 + 0xffff;
+    const MAX_END_BYTES: u64 = 56 + 20 + 22 + 0xffff;
     let size = file.seek(SeekFrom::End(0))?;
-    file.seek(SeekFrom::Start(size.saturating_sub(LONGEST)))?;
+    file.seek(SeekFrom::Start(size.saturating_sub(MAX_END_BYTES)))?;
     let mut end = Vec::new();
-    file.take(LONGEST).read_to_end(&mut end)?;
+    file.take(MAX_END_BYTES).read_to_end(&mut end)?;
     file.seek(SeekFrom::Start(0))?;
     let last = |magic: &[u8; 4], size: usize| end.windows(size).rfind(|record| record.starts_with(magic));
     let Some(record) = last(b"PK\x05\x06", 22) else { return Ok(None) };
@@ -195,8 +195,8 @@ fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
 /// Reads an archive's header of the next file.
 fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     let mut header = Vec::new();
-    entry.take(LONGEST_HEADER + 1).read_to_end(&mut header).map_err(describe_damage)?;
-    if header.len() as u64 > LONGEST_HEADER { Err(describe_damage("a header is too long")) } else { Ok(header) }
+    entry.take(MAX_HEADER_BYTES + 1).read_to_end(&mut header).map_err(describe_damage)?;
+    if header.len() as u64 > MAX_HEADER_BYTES { Err(describe_damage("a header is too long")) } else { Ok(header) }
 }
 
 /// Returns a name escaped for messages.
@@ -223,7 +223,7 @@ impl Walk<'_> {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
         let packed = file.metadata().map_err(ArchiveError::Read)?.len();
-        let meter = Meter::new(LONGEST_LIST);
+        let meter = Meter::new(MAX_LIST_BYTES);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
         // Files may overlap in the archive, and be empty however long they are.
         meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
@@ -310,7 +310,7 @@ impl Walk<'_> {
                 _ => return Err(refused()),
             }
         }
-        if path.components().count() > DEEPEST {
+        if path.components().count() > MAX_DEPTH {
             return Err(ArchiveError::Depth(escape_name(name)));
         }
         Ok(path)
@@ -438,7 +438,7 @@ mod tests {
         let bomb = || zip(&[("zeros", None, &vec![0; (50 << 20) + 1])]);
         let told = look_through(bomb(), ArchiveLimits::USUAL).unwrap_err().to_string();
         assert!(told.contains("more than 52428800 bytes"), "{told}");
-        let deep = zip(&[(&"d/".repeat(DEEPEST + 1), None, b"")]);
+        let deep = zip(&[(&"d/".repeat(MAX_DEPTH + 1), None, b"")]);
         assert!(matches!(look_through(deep, ArchiveLimits::USUAL), Err(ArchiveError::Depth(_))));
     }
 

@@ -3,7 +3,7 @@ use std::io::{self, Read};
 
 /// The maximum number of kept bytes. The course's largest trace has 18 MB. A lower limit leaves mistakes in longer
 /// traces unexplained; a higher limit lets each job of a class take more memory.
-pub const LONGEST: usize = 64 << 20;
+pub const MAX_KEPT_BYTES: usize = 64 << 20;
 
 /// The kept beginning of a trace. It stays complete if judging panics.
 #[derive(Debug)]

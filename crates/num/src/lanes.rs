@@ -70,7 +70,7 @@ impl<N: Number> Sub for Plane<N> {
 }
 
 /// The maximum number of lanes of any machine.
-pub const MOST_LANES: usize = 8;
+pub const MAX_LANES: usize = 8;
 
 /// The widest instructions of this machine.
 #[derive(Debug, Clone, Copy)]
@@ -84,22 +84,22 @@ impl Default for Instructions {
 
 /// The minimum number of pairs, in all steps of a scene, for which wide instructions are worth a check; a virtual
 /// machine may take 0.1 ms to list its processor's instructions.
-const FEW_PAIRS: u64 = 1000;
+const MIN_PAIRS: u64 = 1000;
 
 /// The minimum number of unknowns of a system of linear equations for which wide instructions are worth a check.
-const FEW_UNKNOWNS: usize = 8;
+const MIN_UNKNOWNS: usize = 8;
 
 impl Instructions {
     /// Returns the widest instructions for `pairs` pairs in all steps of a scene, if the check is worth the time.
     #[must_use]
     pub fn for_pairs(pairs: u64) -> Self {
-        if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
+        if pairs < MIN_PAIRS { Self::plain() } else { Self::default() }
     }
 
     /// Chooses the width for systems of linear equations with `unknowns` unknowns.
     #[must_use]
     pub fn for_unknowns(unknowns: usize) -> Self {
-        if unknowns < FEW_UNKNOWNS { Self::plain() } else { Self::default() }
+        if unknowns < MIN_UNKNOWNS { Self::plain() } else { Self::default() }
     }
 
     /// Returns instructions with one lane, on every machine.
@@ -192,7 +192,7 @@ impl<S: Simd> Lanes<S> {
                 }
             } else {
                 for (number, lanes) in [a, b, c, d].into_iter().enumerate() {
-                    let mut single = [0.0; MOST_LANES];
+                    let mut single = [0.0; MAX_LANES];
                     lanes.store(&mut single);
                     for (lane, value) in single[..Self::COUNT].iter().enumerate() {
                         rows[lane * stride + 4 * four + number] = *value;
@@ -388,7 +388,7 @@ mod tests {
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let from = |first: u32| {
-                let values: [f64; MOST_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
+                let values: [f64; MAX_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
                 Lanes::load(simd, &values)
             };
             let sum = from(4).at_least(4.125).or_zero(-2.5) + from(0).below(0.25).or_zero(1.0);

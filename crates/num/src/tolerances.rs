@@ -53,12 +53,12 @@ pub const PARABOLA_COMPLEX: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 /// certainly above [`IMAGINARY_PART`]; with [`PARABOLA_COMPLEX`] they exceed 2^-10 times the square root of this.
 pub const PARABOLA_ROOM: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: products of two coefficients, and sums of moduli, of at least this and less than [`PARABOLA_LARGEST`]
+/// Certificate: products of two coefficients, and sums of moduli, of at least this and less than [`PARABOLA_MAX`]
 /// neither overflow nor underflow in the closed form of a parabola's zeros. With wider bounds they could.
-pub const PARABOLA_SMALLEST: f64 = 1e-200;
+pub const PARABOLA_MIN: f64 = 1e-200;
 
-/// Certificate: the upper bound for [`PARABOLA_SMALLEST`].
-pub const PARABOLA_LARGEST: f64 = 1e200;
+/// Certificate: the upper bound for [`PARABOLA_MIN`].
+pub const PARABOLA_MAX: f64 = 1e200;
 
 /// Certificate: like [`PARABOLA_NEAR`], for degrees three to five with separated zeros ([`DISCRIMINANT_MARGIN`]).
 /// Sixteen times this value has shown no disagreement either.
@@ -72,18 +72,18 @@ pub const DISCRIMINANT_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 /// zeros, which is measured, not proved.
 pub const BERNSTEIN_MARGIN: f64 = 1.0 / (1_u64 << 30) as f64;
 
-/// Certificate: searches among coefficients between this and [`SEARCH_LARGEST_COEFFICIENT`] (or zero) are known to end;
+/// Certificate: searches among coefficients between this and [`SEARCH_MAX_COEFFICIENT`] (or zero) are known to end;
 /// among subnormal numbers some do not (root-finder.md 9.5). Parabolas without a real zero have a leading coefficient
 /// of this size.
-pub const SEARCH_SMALLEST_COEFFICIENT: f64 = 1e-150;
+pub const SEARCH_MIN_COEFFICIENT: f64 = 1e-150;
 
-/// Certificate: the upper bound for [`SEARCH_SMALLEST_COEFFICIENT`].
-pub const SEARCH_LARGEST_COEFFICIENT: f64 = 1e150;
+/// Certificate: the upper bound for [`SEARCH_MIN_COEFFICIENT`].
+pub const SEARCH_MAX_COEFFICIENT: f64 = 1e150;
 
 /// Detection in lanes: positions, displacements, radii, half-planes' points and normals up to this modulus (scene
 /// length unit) give no NaN and no infinity among coefficients, which are of degree six; with larger inputs pairs are
 /// computed one by one. With a much larger limit, the sign of a NaN would depend on the grouping of pairs.
-pub const LANES_LARGEST_INPUT: f64 = 1e48;
+pub const LANES_MAX_INPUT: f64 = 1e48;
 
 /// Fair: a correct program may deviate by this many units of the running error bound (numerics.md 2; LAPACK's test
 /// ratios use 30). Smaller values reject correct programs that evaluate in another way, larger ones hide small

@@ -10,7 +10,7 @@ use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_
 use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
-        LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
+        MAX_IMPLICIT_PARTICLES, MAX_SCENE_BYTES, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
     sim::{RootSearch, Simulation, State, StepError},
@@ -113,7 +113,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
     let bytes = if metadata.is_dir() {
         Vec::new()
     } else {
-        read_limited(file, &metadata, LARGEST_SCENE as u64).map_err(|error| Refusal {
+        read_limited(file, &metadata, MAX_SCENE_BYTES as u64).map_err(|error| Refusal {
             kind: RefusalKind::Undefined,
             stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
             exit_code: FAILED,
@@ -139,8 +139,10 @@ fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }
     let particles = scene.particles.len();
-    (scene.integrator.is_implicit() && particles > LARGEST_IMPLICIT).then(|| {
-        format!("{particles} particles are too many for an implicit integrator, which can have {LARGEST_IMPLICIT}\n")
+    (scene.integrator.is_implicit() && particles > MAX_IMPLICIT_PARTICLES).then(|| {
+        format!(
+            "{particles} particles are too many for an implicit integrator, which can have {MAX_IMPLICIT_PARTICLES}\n"
+        )
     })
 }
 

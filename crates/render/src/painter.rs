@@ -12,16 +12,16 @@ use fosssim_num::vector::{Vec2, at};
 use std::collections::VecDeque;
 
 /// The minimum width of discs and lines, in pixels; otherwise they would be invisible.
-const THINNEST: f64 = 1.5;
+const MIN_WIDTH: f64 = 1.5;
 
 /// The visible depth of a half-plane's inside.
-const INSIDE: f64 = 0.25;
+const INSIDE_DEPTH: f64 = 0.25;
 
 /// The radius in pixels above which discs are drawn as half-planes, which is how they look in the picture.
-const HUGE: f64 = 100_000.0;
+const MAX_DISC_RADIUS: f64 = 100_000.0;
 
 /// The maximum number of points drawn of a particle's path; some of the older points are dropped.
-const LONGEST_PATH: usize = 2000;
+const MAX_PATH_POINTS: usize = 2000;
 
 /// The options of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -176,7 +176,7 @@ impl Painter {
 
     fn draw_disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
         let place = self.view.place(center);
-        let radius = self.view.length(radius).max(THINNEST);
+        let radius = self.view.length(radius).max(MIN_WIDTH);
         if !place.iter().all(|value| value.is_finite()) || !radius.is_finite() {
             return;
         }
@@ -187,7 +187,7 @@ impl Painter {
         if distance > radius {
             return;
         }
-        if radius < HUGE {
+        if radius < MAX_DISC_RADIUS {
             shapes.push(Shape::Disc { center: place, radius, paint });
             return;
         }
@@ -207,7 +207,7 @@ impl Painter {
 
     fn edge(&self, first: Vec2, second: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
         let wide = 2.0 * self.view.length(radius);
-        let width = if wide.is_nan() { THINNEST } else { wide.clamp(THINNEST, HUGE) };
+        let width = if wide.is_nan() { MIN_WIDTH } else { wide.clamp(MIN_WIDTH, MAX_DISC_RADIUS) };
         let frame = self.frame(width);
         if let Some(ends) = frame.line(self.view.place(first), self.view.place(second)) {
             shapes.push(Shape::Line { points: ends.to_vec(), width, paint });
@@ -226,7 +226,7 @@ impl Painter {
         let above = |[x, y]: Point| (x - place[0]) * unit[0] + (y - place[1]) * unit[1];
         let points = self.frame(4.0).side(|point| -above(point));
         if points.len() > 2 {
-            shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE) });
+            shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE_DEPTH) });
         }
         // The visible part of the boundary, around its point nearest to the middle of the picture.
         let size = self.size();
@@ -254,7 +254,7 @@ impl Trail {
         while self.points.front().is_some_and(|&(then, _)| !(time - then <= self.duration)) {
             self.points.pop_front();
         }
-        if self.points.len() >= LONGEST_PATH {
+        if self.points.len() >= MAX_PATH_POINTS {
             let mut keep = false;
             self.points.retain(|_| {
                 keep = !keep;
@@ -270,7 +270,7 @@ impl Trail {
         let mut finish = |piece: &mut Vec<Point>| {
             if piece.len() > 1 {
                 let points = std::mem::take(piece);
-                shapes.push(Shape::Line { points, width: THINNEST, paint: Paint::Solid(self.color) });
+                shapes.push(Shape::Line { points, width: MIN_WIDTH, paint: Paint::Solid(self.color) });
             }
             piece.clear();
         };

@@ -2,10 +2,10 @@
 use std::{fmt, str::FromStr};
 
 /// The smallest width and height.
-pub const SMALLEST: u32 = 16;
+pub const MIN_SIDE: u32 = 16;
 
 /// The largest width and height.
-pub const LARGEST: u32 = 7680;
+pub const MAX_SIDE: u32 = 7680;
 
 /// The width and height of a picture, in pixels and within limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum BadSize {
     #[error("`{0}` is no size; write WIDTHxHEIGHT as in 640x480")]
     Unreadable(String),
     /// A side is too small or too large.
-    #[error("{0}x{1} is no sensible size; width and height may be {SMALLEST} to {LARGEST} pixels")]
+    #[error("{0}x{1} is no sensible size; width and height may be {MIN_SIDE} to {MAX_SIDE} pixels")]
     OutOfRange(u32, u32),
 }
 
@@ -29,9 +29,9 @@ impl Size {
     /// Creates a size.
     ///
     /// # Errors
-    /// If a side is below [`SMALLEST`] or above [`LARGEST`].
+    /// If a side is below [`MIN_SIDE`] or above [`MAX_SIDE`].
     pub const fn new(width: u32, height: u32) -> Result<Self, BadSize> {
-        if width < SMALLEST || width > LARGEST || height < SMALLEST || height > LARGEST {
+        if width < MIN_SIDE || width > MAX_SIDE || height < MIN_SIDE || height > MAX_SIDE {
             return Err(BadSize::OutOfRange(width, height));
         }
         Ok(Self { width, height })

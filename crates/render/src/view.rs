@@ -7,10 +7,10 @@ use fosssim_num::vector::Vec2;
 const MARGIN: f64 = 1.1;
 
 /// The largest coordinate for which a view is fitted; the squares and sums of larger ones are infinite.
-const FAR: f64 = 1e100;
+const MAX_COORDINATE: f64 = 1e100;
 
 /// The maximum factor by which bodies that leave the scene widen the initial view.
-const WIDEST: f64 = 4.0;
+const MAX_WIDENING: f64 = 4.0;
 
 /// The smallest box around discs; initially empty.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,9 +37,9 @@ impl Extent {
     /// Widens the box to contain the particles at `positions`.
     pub fn add(&mut self, scene: &Scene, positions: &[f64]) {
         for (particle, place) in scene.particles.iter().zip(positions.chunks_exact(2)) {
-            let radius = particle.radius.clamp(0.0, FAR);
+            let radius = particle.radius.clamp(0.0, MAX_COORDINATE);
             // Bodies without a position in the plane (NaN) are not drawn.
-            if place.iter().all(|coordinate| coordinate.abs() < FAR) {
+            if place.iter().all(|coordinate| coordinate.abs() < MAX_COORDINATE) {
                 self.low = Vec2::new(self.low.x.min(place[0] - radius), self.low.y.min(place[1] - radius));
                 self.high = Vec2::new(self.high.x.max(place[0] + radius), self.high.y.max(place[1] + radius));
             }
@@ -72,7 +72,7 @@ impl Extent {
             return *self;
         }
         let half = start.half();
-        let most = WIDEST * half.x.max(half.y);
+        let most = MAX_WIDENING * half.x.max(half.y);
         let (center, reach) = (start.center(), Vec2::new(most, most));
         if !(most > 0.0) {
             return *self;
@@ -115,7 +115,8 @@ impl View {
         // For a single point, or no points, one length unit on every side.
         let fallback = 0.5 * f64::from(size.width().min(size.height()));
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { fallback };
-        let center = if center.x.abs() < FAR && center.y.abs() < FAR { center } else { Vec2::zeros() };
+        let center =
+            if center.x.abs() < MAX_COORDINATE && center.y.abs() < MAX_COORDINATE { center } else { Vec2::zeros() };
         Self { size, center, scale }
     }
 

@@ -79,13 +79,13 @@ fn start_problem(errno: i32) -> StartProblem {
 /// Returns the library that the loader of glibc or musl reports as missing. The program itself could print the same
 /// text, which would only change a name in a message.
 fn missing_library(stderr: &str) -> Option<String> {
-    const LONGEST: usize = 100;
+    const MAX_NAME_BYTES: usize = 100;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
     let (_, after) = stderr
         .split_once("error while loading shared libraries: ")
         .or_else(|| stderr.split_once("Error loading shared library "))?;
     let name = after.split([':', '\n']).next()?.trim();
-    (name.len() <= LONGEST && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
+    (name.len() <= MAX_NAME_BYTES && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
 }
 
 /// Returns whether a sanitizer's runtime reports that it was denied its terabytes of address space.

@@ -53,7 +53,7 @@ layers! {
 }
 
 /// The first version of Landlock that restricts signals.
-const SCOPES_SINCE: u8 = 6;
+const SIGNAL_SCOPE_ABI: u8 = 6;
 
 /// The state of one layer on this host.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -249,7 +249,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
 
 /// Returns the reports with the file rules of an older kernel.
 pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerReport> {
-    let mut reports = if version < SCOPES_SINCE { without(reports, Layer::Scopes) } else { reports.to_vec() };
+    let mut reports = if version < SIGNAL_SCOPE_ABI { without(reports, Layer::Scopes) } else { reports.to_vec() };
     for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
         report.detail = format!("version {version} on request");
     }

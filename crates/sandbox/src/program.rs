@@ -103,7 +103,7 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 /// there.
 fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
     /// The maximum depth of interpreters that are scripts; the same as the kernel's.
-    const DEEPEST: u32 = 4;
+    const MAX_DEPTH: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
     let hint = "; install it, or name another one";
     let missing = |name: &str, hint: &'static str| StartProblem::MissingInterpreter {
@@ -146,7 +146,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
     }
     let start = first_bytes(&resolved).ok_or(StartProblem::NotPermitted)?;
     let mut program = match start.strip_prefix(b"#!") {
-        Some(line) if depth < DEEPEST => {
+        Some(line) if depth < MAX_DEPTH => {
             let outer = find_interpreter(line, own, depth + 1)?;
             let inner = std::mem::take(&mut script.words);
             let by = outer.script.clone().unwrap_or_default();

@@ -470,12 +470,12 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> i
 }
 
 /// The maximum number of descriptors in one message.
-const MOST_DESCRIPTORS: usize = 8;
+const MAX_DESCRIPTORS: usize = 8;
 
 /// Sends one byte together with descriptors.
 pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [BorrowedFd<'_>; N]) -> io::Result<()> {
-    const { assert!(N <= MOST_DESCRIPTORS, "they fit into the control space") };
-    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
+    const { assert!(N <= MAX_DESCRIPTORS, "they fit into the control space") };
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MAX_DESCRIPTORS))];
     let mut control = SendAncillaryBuffer::new(&mut space);
     control.push(SendAncillaryMessage::ScmRights(&fds));
     rustix::net::sendmsg(to, &[IoSlice::new(&[byte])], &mut control, SendFlags::NOSIGNAL)?;
@@ -484,7 +484,7 @@ pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [
 
 /// Receives bytes together with descriptors. No bytes mean that the other side is closed.
 pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
-    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MAX_DESCRIPTORS))];
     let mut control = RecvAncillaryBuffer::new(&mut space);
     let parts = &mut [IoSliceMut::new(buffer)];
     let received = rustix::net::recvmsg(from, parts, &mut control, RecvFlags::CMSG_CLOEXEC)?;

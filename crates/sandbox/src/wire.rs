@@ -22,9 +22,9 @@ pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 /// The command byte that stops the program.
 pub(super) const COMMAND_CANCEL: u8 = b'c';
 /// The size that few messages exceed, in bytes.
-const USUAL_MESSAGE: u64 = 4 << 10;
+const USUAL_MESSAGE_BYTES: u64 = 4 << 10;
 /// The maximum size of a message, in bytes. A larger size means that the streams are out of step.
-const LONGEST_MESSAGE: u64 = 64 << 20;
+const MAX_MESSAGE_BYTES: u64 = 64 << 20;
 
 /// The byte that starts a run in a supervisor of several runs. It is sent with three descriptors: the channel of
 /// commands, the channel of answers, and the working folder on disk.
@@ -211,7 +211,7 @@ pub(super) fn packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
 
 /// Reads `length` bytes. Memory grows as they arrive.
 pub(super) fn receive_bytes(from: impl Read, length: u64) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::with_capacity(usize::try_from(length.min(USUAL_MESSAGE)).unwrap_or_default() + 1);
+    let mut bytes = Vec::with_capacity(usize::try_from(length.min(USUAL_MESSAGE_BYTES)).unwrap_or_default() + 1);
     if from.take(length).read_to_end(&mut bytes)? as u64 != length {
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
@@ -223,7 +223,7 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     let mut length = [0; 8];
     from.read_exact(&mut length)?;
     let length = u64::from_le_bytes(length);
-    if length > LONGEST_MESSAGE {
+    if length > MAX_MESSAGE_BYTES {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
     }
     // The length is not trusted.

@@ -4,7 +4,7 @@ use super::{Area, Mistake, StepMistake};
 /// The author of a program, who makes one mistake, none, or several in different parts of the assignment.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Student {
-    mistakes: [Option<Mistake>; Student::MOST],
+    mistakes: [Option<Mistake>; Student::MAX_MISTAKES],
     /// The areas of the mistakes, one bit each; most queries are about areas without a mistake.
     areas: u64,
     /// Whether one of the mistakes is a slip in a quantity ([`StepMistake::Edit`]).
@@ -14,7 +14,7 @@ pub struct Student {
 
 impl Student {
     /// The maximum number of mistakes of one student.
-    pub const MOST: usize = 8;
+    pub const MAX_MISTAKES: usize = 8;
 
     /// Creates a student with an optional mistake.
     pub fn new(mistake: Option<Mistake>) -> Self {

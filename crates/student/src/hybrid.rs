@@ -11,10 +11,10 @@ use super::{
 const HERE: &[Area] = &[Area::ImpactZones];
 
 /// A number of rounds that no right program needs in any scene; some mistakes change the list of zones forever.
-const MOST_ROUNDS: u32 = 1000;
+const MAX_ROUNDS: u32 = 1000;
 
 /// The number of zones (or the number of particles, if larger) beyond which a step with a guard is stopped.
-const MOST_ZONES: usize = 1000;
+const MAX_ZONES: usize = 1000;
 
 /// Handles a step's collisions. `middle` is called between the two parts, with the state and the log so far, for the
 /// trace's mid record.
@@ -83,14 +83,14 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         next.extend(found);
         let next = zones::merge(student, next);
         let same = zones::equal(student, &zones, &next);
-        if same || round > MOST_ROUNDS {
+        if same || round > MAX_ROUNDS {
             if student.makes(Mistake::GeometricExtraPass) {
                 detection::pass(world, q_start, &state.x, log)?;
             }
             return Ok(());
         }
         // Some mistakes enlarge the list in every round; a step with a guard does not wait for that.
-        if log.guard.is_some() && next.len() > MOST_ZONES.max(world.scene.particles.len()) {
+        if log.guard.is_some() && next.len() > MAX_ZONES.max(world.scene.particles.len()) {
             return Err(StepFailure::Refused);
         }
         zones = next;

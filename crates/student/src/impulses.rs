@@ -10,7 +10,7 @@ use super::{
 };
 
 /// The limit of impulses in programs that cap them (length per time).
-const CAP: f64 = 0.5;
+const MAX_IMPULSE: f64 = 0.5;
 
 /// Applies impulses until a pass finds no contact (returns true) or `max_iterations` rounds are over (returns false).
 /// `state` holds the prediction first and the result at the end.
@@ -181,8 +181,8 @@ fn resolve(
 fn cap(world: &World, before: &State, state: &mut State) {
     for particle in 0..world.scene.particles.len() {
         let change = at(&state.v, particle) - at(&before.v, particle);
-        if length(change) > CAP {
-            let share = CAP / length(change);
+        if length(change) > MAX_IMPULSE {
+            let share = MAX_IMPULSE / length(change);
             put(&mut state.v, particle, at(&before.v, particle) + share * change);
             let moved = at(&state.x, particle) - at(&before.x, particle);
             put(&mut state.x, particle, at(&before.x, particle) + share * moved);

@@ -70,8 +70,8 @@ pub(crate) struct Similarity {
 
 /// The minimum sum of coefficients that neither overflows nor underflows in the computation. Outside this range, bounds
 /// are computed.
-const LEAST: f64 = 1e-100;
-pub(super) const MOST: f64 = 1e100;
+const MIN_SAFE_SUM: f64 = 1e-100;
+pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
 impl Similarity {
     /// The similarity of polynomials that are not compared.
@@ -127,7 +127,7 @@ impl Similarity {
     /// with factors near 1.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
-        let is_moderate = |sum: f64| (LEAST..MOST).contains(&sum);
+        let is_moderate = |sum: f64| (MIN_SAFE_SUM..MAX_SAFE_SUM).contains(&sum);
         is_moderate(self.sum)
             & is_moderate(self.logged)
             & (is_whole | (self.scale <= FAIR_LOSS))
@@ -156,17 +156,17 @@ fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
 /// `false` means unknown.
 ///
 /// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
-/// is off by less than `WIDEST` units of all bounds together. The tolerances of six coefficients are at most 2
+/// is off by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
 /// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead have less.
 /// Each time therefore allows an interval of factors, and if two of these are disjoint there is no factor.
 pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// Tolerances, and the rounding of values here.
-    const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
+    const MAX_DEVIATION: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
     let Some(missing) = expected.len().checked_sub(actual.len()).filter(|_| expected.len() <= MAX_COEFFICIENTS) else {
         return false;
     };
     let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
-    let room = WIDEST * UNIT_ROUNDOFF * size;
+    let room = MAX_DEVIATION * UNIT_ROUNDOFF * size;
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
     // Dropped coefficients may be missing, whatever the factor is. If both polynomials lack them, they may have been
     // slightly larger.

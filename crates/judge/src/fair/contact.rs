@@ -19,7 +19,7 @@ use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, Polynomial},
     tolerances::{
         FAIR_LOSS, FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS, LEADING_COEFFICIENT,
-        SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+        SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
     },
     vector::{Vec2, at, length},
 };
@@ -267,7 +267,7 @@ pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
 
 /// Returns whether a coefficient is zero, or far from where numbers overflow and underflow.
 fn is_ordinary(c: f64) -> bool {
-    (c == 0.0) | (c.abs() >= SEARCH_SMALLEST_COEFFICIENT) & (c.abs() <= SEARCH_LARGEST_COEFFICIENT)
+    (c == 0.0) | (c.abs() >= SEARCH_MIN_COEFFICIENT) & (c.abs() <= SEARCH_MAX_COEFFICIENT)
 }
 
 /// Returns the time of impact of `polynomials`, infinite if there is certainly no impact; `None` if the root finder

@@ -16,7 +16,7 @@ pub struct Factors {
 }
 
 /// The factors of all kinds of pairs and numbers of polynomials.
-pub type Scales = ByKind<[Factors; PairKind::MOST_POLYNOMIALS]>;
+pub type Scales = ByKind<[Factors; PairKind::MAX_POLYNOMIALS]>;
 
 impl Default for Factors {
     fn default() -> Self {

@@ -11,10 +11,10 @@ use fosssim_findings::{
 use fosssim_model::sim::{ByKind, PairKind, StepError};
 
 /// The maximum number of borderline decisions that are kept as examples.
-const EXAMPLES: usize = 8;
+const MAX_EXAMPLES: usize = 8;
 
 /// The maximum number of decisions of a small scene.
-const FEW: u64 = 64;
+const SMALL_SCENE_DECISIONS: u64 = 64;
 
 /// The fair rules' judgement of a trace so far, and the polynomials that depend on the rest of the trace.
 #[derive(Debug, Default)]
@@ -26,7 +26,7 @@ pub(crate) struct Judging {
     claimed: Scales,
     /// The number of polynomials that are identical to the reference's. Approaches count once per step, because they
     /// show nothing for objects at rest.
-    same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
+    same: ByKind<[u64; PairKind::MAX_POLYNOMIALS]>,
     /// Polynomials that depend on the program's factors, step by step.
     pending: Vec<PendingOfStep>,
 }
@@ -54,7 +54,7 @@ impl Judging {
         self.said.findings.counts += step.more;
         self.said.decisions += step.decisions;
         self.said.borderline += step.borderline.len() as u64;
-        let room = EXAMPLES.saturating_sub(self.said.borderline_examples.len());
+        let room = MAX_EXAMPLES.saturating_sub(self.said.borderline_examples.len());
         self.said.borderline_examples.extend(step.borderline.iter().take(room));
         for (all, new) in self.scales.values_mut().flatten().zip(step.scales.values().flatten()) {
             all.add(new);
@@ -148,7 +148,7 @@ impl Judging {
     /// Returns whether most decisions are borderline and differ from the reference's. Every correct program has a few
     /// such decisions, but not most.
     fn is_undecided(&self) -> bool {
-        self.said.borderline >= FEW && self.said.borderline > self.said.decisions / 2
+        self.said.borderline >= SMALL_SCENE_DECISIONS && self.said.borderline > self.said.decisions / 2
     }
 
     /// Stops judging; later steps are not judged.

@@ -16,7 +16,7 @@ use fosssim_model::{
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::same_bits};
 
 /// The maximum number of borderline decisions of a hybrid step whose alternatives are tried, in all combinations.
-const MOST_FLIPS: usize = 4;
+const MAX_FLIPS: usize = 4;
 
 /// Judges a step. `identical` states that the states, impulses and polynomials of both records are identical to the
 /// reference's; then only the rest of the records is checked. The reference has a result; if this run has none, the
@@ -78,7 +78,7 @@ fn follow(
     if second.total() == 0 || !second.hangs_on_decisions() {
         return Ok(second);
     }
-    let borderline = &borderline[..borderline.len().min(MOST_FLIPS)];
+    let borderline = &borderline[..borderline.len().min(MAX_FLIPS)];
     for set in 1_usize..1 << borderline.len() {
         let flips: Vec<usize> =
             borderline.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, call)| *call).collect();

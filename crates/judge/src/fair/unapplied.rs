@@ -16,13 +16,13 @@ use fosssim_num::vector::{Vec2, at, length, put};
 use std::collections::BTreeSet;
 
 /// The maximum number of pairs at one particle among which omitted pairs are searched, because all choices are tried.
-const MOST_AT_ONE: usize = 6;
+const MAX_PAIRS_PER_PARTICLE: usize = 6;
 
 /// The maximum number of pairs that are examined in one step.
-const MOST_PAIRS: usize = 1 << 16;
+const MAX_PAIRS: usize = 1 << 16;
 
 /// The maximum number of choices that are tried in one step.
-const MOST_CHOICES: usize = 1 << 20;
+const MAX_CHOICES: usize = 1 << 20;
 
 /// A pair near a particle whose velocity is wrong.
 struct NearPair {
@@ -149,7 +149,7 @@ impl NearPairs {
                 candidates.push(one);
             }
         }
-        if candidates.len() > MOST_PAIRS {
+        if candidates.len() > MAX_PAIRS {
             return None;
         }
         let mut of_particle: Vec<Vec<usize>> = vec![Vec::new(); particles];
@@ -205,11 +205,11 @@ fn settle(
         for particle in (0..wrong.len()).filter(|particle| wrong[*particle]) {
             let open: Vec<usize> =
                 of_particle[particle].iter().copied().filter(|index| candidates[*index].excess.is_none()).collect();
-            if open.is_empty() || open.len() > MOST_AT_ONE {
+            if open.is_empty() || open.len() > MAX_PAIRS_PER_PARTICLE {
                 continue;
             }
             tried += choices(open.len());
-            if tried > MOST_CHOICES {
+            if tried > MAX_CHOICES {
                 return;
             }
             let Some(choice) = only_choice(candidates, &open, particle, rest[particle], tolerances.velocity(particle))
@@ -238,10 +238,10 @@ fn only_choice(
     particle: usize,
     rest: Vec2,
     tolerance: f64,
-) -> Option<[f64; MOST_AT_ONE]> {
+) -> Option<[f64; MAX_PAIRS_PER_PARTICLE]> {
     let mut found = None;
     for number in 0..choices(open.len()) {
-        let (mut choice, mut left, mut digits) = ([0.0; MOST_AT_ONE], rest, number);
+        let (mut choice, mut left, mut digits) = ([0.0; MAX_PAIRS_PER_PARTICLE], rest, number);
         for (excess, index) in choice.iter_mut().zip(open) {
             *excess = [0.0, -1.0, 1.0][digits % 3];
             digits /= 3;

@@ -12,7 +12,7 @@ use fosssim_model::{
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
 /// The maximum number of threads. Reading is sequential, so more threads would only cost memory.
-const MOST_THREADS: usize = 8;
+const MAX_THREADS: usize = 8;
 
 /// The data that one thread needs to judge a step.
 struct Worker {
@@ -36,13 +36,13 @@ pub(super) struct Workers<'a> {
 impl<'a> Workers<'a> {
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
         let Options { threads, root_search, one_by_one, .. } = *options;
-        Self { scene, root_search, one_by_one, threads: threads.min(MOST_THREADS), list: Vec::new(), pool: None }
+        Self { scene, root_search, one_by_one, threads: threads.min(MAX_THREADS), list: Vec::new(), pool: None }
     }
 
     /// Starts all threads, and returns whether there is more than one.
     pub(super) fn has_pool(&mut self) -> bool {
         let threads = match self.threads {
-            0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MOST_THREADS),
+            0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MAX_THREADS),
             given => given,
         };
         self.grow_to(threads);

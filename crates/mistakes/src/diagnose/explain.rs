@@ -19,7 +19,7 @@ use fosssim_student::{Area, Row, assignments::t2m2::Subject, find};
 
 /// The maximum number of pairs for explanations if steps log polynomials. Explanations keep whole steps of the
 /// reference, which take a few hundred bytes per pair. The first value that is not finite is reported nevertheless.
-const MOST_PAIRS: usize = 400_000;
+const MAX_PAIRS: usize = 400_000;
 
 /// Returns the likely mistakes of the program that wrote the trace, the likeliest first; empty if nothing is wrong, or
 /// if no known mistake explains it.
@@ -42,7 +42,7 @@ pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
 
 /// Explains a trace like [`explain`], with records from any source.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
-    if Layout::for_scene(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
+    if Layout::for_scene(scene).polynomials && pairs(scene).count() > MAX_PAIRS {
         return not_finite::find_in_trace(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);

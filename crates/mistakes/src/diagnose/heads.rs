@@ -15,10 +15,10 @@ use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject,
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of mistakes reported for a program, in addition to empty stages.
-const MOST: usize = 3;
+const MAX_MISTAKES: usize = 3;
 
 /// The number of traces from which a single trace is no evidence for an empty stage.
-const MANY: usize = 8;
+const MANY_TRACES: usize = 8;
 
 /// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
 /// still empty, which count as one and come first. `refuted` are keys of mistakes that right traces of the same program
@@ -44,7 +44,7 @@ pub fn explain_together<'a>(
     drop_what_follows(&mut open);
     keep_earliest_stage(&mut open);
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
-    while found.len() + usize::from(!empty.is_empty()) < MOST {
+    while found.len() + usize::from(!empty.is_empty()) < MAX_MISTAKES {
         let Some(next) = likeliest(&open) else { break };
         let said = next.statement();
         let is_empty = find(&next.key).is_some_and(is_empty_stage);
@@ -276,7 +276,7 @@ const fn stage_of(area: Area) -> Option<StepStage> {
 
 /// Returns whether enough traces look as if the stage were empty.
 fn is_seen_again(open: &[OpenTrace], said: &str) -> bool {
-    open.len() < MANY || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
+    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
 }
 
 /// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in

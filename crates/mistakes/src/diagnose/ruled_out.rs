@@ -8,10 +8,10 @@ use fosssim_student::{Area, Student, find, trace_within};
 use std::{cell::Cell, collections::BTreeMap};
 
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
-const MOST_ENDS: usize = 6;
+const MAX_SIMULATED_TRACES: usize = 6;
 
 /// The number of polynomials in a step after which a program counts as endless.
-const MOST_POLYNOMIALS: usize = 200_000;
+const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
 /// Returns the named keys of mistakes in code that a student of this milestone does not write.
 fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
@@ -33,10 +33,11 @@ fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<S
 fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
-    let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MOST_POLYNOMIALS) {
+    let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MAX_STEP_POLYNOMIALS) {
         Ok(trace) | Err((trace, _)) => !find_in_trace(scene, Source::whole(&trace)).is_empty(),
     };
-    let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MOST_ENDS);
+    let mut of_end =
+        wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_SIMULATED_TRACES);
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 

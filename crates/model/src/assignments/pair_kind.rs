@@ -30,7 +30,7 @@ impl PairKind {
     /// Returns the number of coefficients of each polynomial before small leading ones are dropped; 0 for a missing
     /// polynomial.
     #[must_use]
-    pub const fn coefficients(self) -> [usize; Self::MOST_POLYNOMIALS] {
+    pub const fn coefficients(self) -> [usize; Self::MAX_POLYNOMIALS] {
         match self {
             Self::ParticleEdge => [5, 3, 3, 6],
             Self::ParticleParticle | Self::ParticleHalfPlane => [3, 2, 0, 0],
@@ -44,7 +44,7 @@ impl PairKind {
     }
 
     /// The maximum number of polynomials that a detection call logs.
-    pub const MOST_POLYNOMIALS: usize = 4;
+    pub const MAX_POLYNOMIALS: usize = 4;
 
     /// Returns the kind's place in [`PairKind::ALL`].
     #[inline]

@@ -13,11 +13,11 @@ use fosssim_num::vector::Vec2;
 
 /// The maximum number of particles with an implicit integrator. Its dense matrix of (2N)² numbers then takes half a
 /// gibibyte, and solving it takes minutes per step.
-pub const LARGEST_IMPLICIT: usize = 4096;
+pub const MAX_IMPLICIT_PARTICLES: usize = 4096;
 
 /// The maximum number of pairs of a particle and an obstacle that are checked for coincidence, so that the time of a
 /// check does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
-const MOST_PAIRS: usize = 4_000_000;
+const MAX_PAIRS: usize = 4_000_000;
 
 /// Checks the scene as a whole.
 pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
@@ -65,7 +65,7 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
         report.warning(|| Problem::new(span, "the scene has no particles").help("its trace holds no state"));
     }
     if let (Some(part), true) = (&parts.integrator, is_implicit(parts))
-        && count > LARGEST_IMPLICIT
+        && count > MAX_IMPLICIT_PARTICLES
     {
         report.error(|| {
             about(
@@ -240,7 +240,7 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
     };
     let pairs =
         parts.edges.iter().enumerate().flat_map(|edge| parts.particles.iter().enumerate().map(move |p| (edge, p)));
-    for ((edge_number, edge), (number, particle)) in pairs.take(MOST_PAIRS) {
+    for ((edge_number, edge), (number, particle)) in pairs.take(MAX_PAIRS) {
         let (Some(edge), Part { tag, value: Some(particle) }) = (edge.value, particle) else { continue };
         let Some((start, end)) = parts.place(edge.first).zip(parts.place(edge.second)) else { continue };
         if number == edge.first || number == edge.second || start == end {
@@ -261,7 +261,7 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
 fn check_particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let planes = parts.half_planes.iter().enumerate();
     let pairs = planes.flat_map(|plane| parts.particles.iter().enumerate().map(move |particle| (plane, particle)));
-    for ((plane_number, plane), (number, particle)) in pairs.take(MOST_PAIRS) {
+    for ((plane_number, plane), (number, particle)) in pairs.take(MAX_PAIRS) {
         let (Some(plane), Part { tag, value: Some(particle) }) = (plane.value, particle) else { continue };
         let (toward, normal) = (plane.point - particle.position, plane.normal);
         let scale = toward.dot(&normal) / normal.dot(&normal);

@@ -7,7 +7,7 @@ use std::{collections::BTreeSet, ops::Range};
 use quick_xml::errors::{Error, SyntaxError};
 use quick_xml::events::Event;
 
-use super::problem::{MOST_PROBLEMS, Problem, Report, quote};
+use super::problem::{MAX_PROBLEMS, Problem, Report, quote};
 use super::tag::{self, Tag, is_space, offset};
 use super::{grammar, rule::Rule};
 
@@ -84,7 +84,7 @@ impl<'t> DocumentReader<'t, '_> {
                 Ok(Event::Start(_)) => self.start(span, true),
                 Ok(Event::Empty(_)) => self.start(span, false),
                 // Enough problems are reported, and the search for an intended name costs time.
-                Ok(Event::End(_)) if self.wrong_ends > MOST_PROBLEMS => break,
+                Ok(Event::End(_)) if self.wrong_ends > MAX_PROBLEMS => break,
                 Ok(Event::End(_)) => self.end(span),
                 Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => self.stray = was_stray,
                 Ok(Event::Text(_) | Event::CData(_) | Event::GeneralRef(_)) => self.report_stray_text(span, was_stray),
@@ -262,8 +262,8 @@ impl<'t> DocumentReader<'t, '_> {
     fn end(&mut self, span: Range<usize>) {
         let name = self.text[span.start + 2..span.end - 1].trim_ascii_end();
         // The maximum depth of nesting. Without a limit, a file of wrong closing tags would take too long.
-        const DEEPEST: usize = 64;
-        let known = self.open.iter().rev().take(DEEPEST).position(|open| open.name == name);
+        const MAX_DEPTH: usize = 64;
+        let known = self.open.iter().rev().take(MAX_DEPTH).position(|open| open.name == name);
         match (known, self.open.last()) {
             (Some(0), _) => {}
             (Some(above), Some(last)) => {

@@ -59,14 +59,14 @@ const HABITS: [(&str, &str); 8] = [
 /// an abbreviation, or within a few typos (a third of the letters, at most two).
 #[must_use]
 pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
-    const LONGEST: usize = 40;
-    if word.len() > LONGEST {
+    const MAX_LETTERS: usize = 40;
+    if word.len() > MAX_LETTERS {
         return None;
     }
     let plain = to_plain(word);
     let habit = HABITS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
     candidates
-        .filter(|candidate| candidate.len() <= LONGEST)
+        .filter(|candidate| candidate.len() <= MAX_LETTERS)
         .filter_map(|candidate| {
             let other = self::to_plain(candidate);
             // The beginning of a name is as good as a name with one typo.

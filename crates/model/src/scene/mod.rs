@@ -26,12 +26,12 @@ mod write;
 mod xml;
 
 pub use crate::assignments::Integrator;
-pub use checks::LARGEST_IMPLICIT;
+pub use checks::MAX_IMPLICIT_PARTICLES;
 pub use grammar::closest;
 pub use known::{UnknownFeature, UnknownPart};
 pub use model::{
     Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
 };
-pub use problem::{MOST_PROBLEMS, Problem, Problems, Severity};
-pub use reader::{LARGEST_SCENE, LoadedScene, read};
+pub use problem::{MAX_PROBLEMS, Problem, Problems, Severity};
+pub use reader::{LoadedScene, MAX_SCENE_BYTES, read};
 pub use write::{collision_element, integrator_element, write};

@@ -2,7 +2,7 @@
 use std::{fmt, ops::Range};
 
 /// The maximum number of errors, and of warnings, that are kept for one scene; further ones are only counted.
-pub const MOST_PROBLEMS: usize = 200;
+pub const MAX_PROBLEMS: usize = 200;
 
 /// The severity of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -53,7 +53,7 @@ pub struct Problems {
     pub source: String,
     /// The problems, at least one of them an error.
     pub list: Vec<Problem>,
-    /// The number of further problems that were not kept ([`MOST_PROBLEMS`]).
+    /// The number of further problems that were not kept ([`MAX_PROBLEMS`]).
     pub omitted: usize,
 }
 
@@ -125,7 +125,7 @@ impl Report {
 
     pub(super) fn add(&mut self, severity: Severity, problem: impl FnOnce() -> Problem) {
         let kept = &mut self.kept[severity as usize];
-        if *kept < MOST_PROBLEMS {
+        if *kept < MAX_PROBLEMS {
             *kept += 1;
             self.list.push(Problem { severity, ..problem() });
         } else {
@@ -181,11 +181,11 @@ impl Place {
 
 /// Returns a part of the scene for a message, with control characters escaped, and shortened if it is long.
 pub(super) fn quote(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let mut quoted: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    const MAX_SHOWN_CHARS: usize = 40;
+    let mut quoted: String = text.chars().take(MAX_SHOWN_CHARS).flat_map(char::escape_debug).collect();
     // Quotation marks need no escape between backquotes.
     quoted = quoted.replace("\\\"", "\"").replace("\\'", "'");
-    if text.chars().nth(LONGEST).is_some() {
+    if text.chars().nth(MAX_SHOWN_CHARS).is_some() {
         quoted.push_str("...");
     }
     quoted
@@ -210,12 +210,12 @@ mod tests {
     #[test]
     fn the_list_is_capped_and_the_rest_counted() {
         let mut report = Report::default();
-        for _ in 0..MOST_PROBLEMS + 3 {
+        for _ in 0..MAX_PROBLEMS + 3 {
             report.error(|| Problem::new(0..0, "e"));
         }
         report.warning(|| Problem::new(0..0, "w"));
         let (list, omitted) = report.finish(b"");
-        assert_eq!((list.len(), omitted), (MOST_PROBLEMS + 1, 3));
+        assert_eq!((list.len(), omitted), (MAX_PROBLEMS + 1, 3));
         let shown = Problems { source: String::new(), list, omitted }.to_string();
         assert!(shown.ends_with("1:1: warning: w\nand 3 more"), "{shown}");
     }

@@ -10,7 +10,7 @@ use super::problem::{Problem, Problems, Report};
 use super::{checks, document, original, xml};
 
 /// The maximum size of a scene file, in bytes.
-pub const LARGEST_SCENE: usize = 8 << 20;
+pub const MAX_SCENE_BYTES: usize = 8 << 20;
 
 /// A scene without errors.
 #[derive(Debug, Clone, PartialEq)]
@@ -25,10 +25,10 @@ pub struct LoadedScene {
 ///
 /// # Errors
 ///
-/// All problems found, up to [`super::MOST_PROBLEMS`] of each severity, if at least one is an error. The spans refer to
+/// All problems found, up to [`super::MAX_PROBLEMS`] of each severity, if at least one is an error. The spans refer to
 /// `text` as given.
 pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
-    if text.len() > LARGEST_SCENE {
+    if text.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes", text.len());
         return Err(Problems::whole(name, message, "a scene has at most 8 MiB"));
     }

@@ -1,5 +1,5 @@
 //! The strict reader's words about every kind of problem, and what it does not say twice.
-use super::{LARGEST_SCENE, read};
+use super::{MAX_SCENE_BYTES, read};
 
 const START: &str = "<duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\n";
 const TWO: &str = "<particle px=\"0\" py=\"0\" vx=\"0\" vy=\"0\" m=\"1\" fixed=\"0\"/>\n\
@@ -461,7 +461,7 @@ fn bytes_that_are_no_text() {
     assert_eq!(bytes(&latin), "4:23: a byte that is not UTF-8 (save the file as UTF-8)");
     let ended: Vec<u8> = scene.iter().map(|&byte| if byte == b'?' { 0 } else { byte }).collect();
     assert_eq!(bytes(&ended), "4:23: a NUL byte (the original stops reading there)");
-    assert_eq!(bytes(&vec![b' '; LARGEST_SCENE + 1]), "1:1: the file has 8388609 bytes (a scene has at most 8 MiB)");
+    assert_eq!(bytes(&vec![b' '; MAX_SCENE_BYTES + 1]), "1:1: the file has 8388609 bytes (a scene has at most 8 MiB)");
 }
 
 #[test]

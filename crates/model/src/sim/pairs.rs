@@ -257,7 +257,7 @@ mod tests {
     fn numbers_lead_back_to_kinds() {
         for (number, kind) in PairKind::ALL.into_iter().enumerate() {
             assert_eq!((kind.index(), PairKind::from_code(kind.code())), (number, Some(kind)));
-            assert!(kind.polynomials() <= PairKind::MOST_POLYNOMIALS);
+            assert!(kind.polynomials() <= PairKind::MAX_POLYNOMIALS);
         }
         assert_eq!((PairKind::from_code(-1), PairKind::from_code(3)), (None, None));
     }

@@ -18,11 +18,11 @@ pub struct PolynomialBytes {
 }
 
 /// The number of bytes of the largest polynomial that a detection logs.
-const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
+const MAX_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
 /// The maximum number of bytes by which larger lists grow; small lists double. A hostile trace may make a step's list
 /// take hundreds of megabytes, but not twice as many.
-const MOST_GROWTH: usize = 16 << 20;
+const MAX_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {
     /// Empties the list, and removes earlier ones.
@@ -84,7 +84,7 @@ impl PolynomialBytes {
         assert!(coefficients.len() <= MAX_COEFFICIENTS, "detection polynomials are of degree five at most");
         let mut largest = self.largest;
         // A copy of constant length, of which a part counts, is several times faster than a copy of variable length.
-        let mut polynomial = [0; MOST_BYTES];
+        let mut polynomial = [0; MAX_BYTES];
         #[expect(clippy::cast_possible_truncation, reason = "at most six")]
         let size = coefficients.len() as u32;
         polynomial[..4].copy_from_slice(&size.to_le_bytes());
@@ -92,7 +92,7 @@ impl PolynomialBytes {
             place.copy_from_slice(&coefficient.to_le_bytes());
             largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
         }
-        self.room(MOST_BYTES)[..MOST_BYTES].copy_from_slice(&polynomial);
+        self.room(MAX_BYTES)[..MAX_BYTES].copy_from_slice(&polynomial);
         self.largest = largest;
         self.count_added(4 + 8 * coefficients.len(), 1);
     }
@@ -122,7 +122,7 @@ impl PolynomialBytes {
     #[cold]
     fn grow(&mut self, bytes: usize) {
         let size = self.bytes.len();
-        let most = (self.used + bytes).max(size + size.min(MOST_GROWTH));
+        let most = (self.used + bytes).max(size + size.min(MAX_GROWTH));
         self.bytes.reserve_exact(most - size);
         self.bytes.resize(most, 0);
     }
@@ -136,10 +136,10 @@ mod tests {
     #[test]
     fn long_lists_do_not_double() {
         let mut list = PolynomialBytes::default();
-        while list.bytes().len() < 5 * MOST_GROWTH {
+        while list.bytes().len() < 5 * MAX_GROWTH {
             list.push(&[0.5; 6]);
         }
-        assert!(list.bytes.capacity() <= list.bytes().len() + MOST_GROWTH, "{}", list.bytes.capacity());
+        assert!(list.bytes.capacity() <= list.bytes().len() + MAX_GROWTH, "{}", list.bytes.capacity());
     }
 
     #[test]

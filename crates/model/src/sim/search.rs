@@ -74,9 +74,9 @@ const SEARCH_WORK: u64 = 16;
 pub(crate) const SUBNORMAL_WORK: u64 = 32;
 
 /// The minimum modulus for which powers up to the fifth, and powers of differences with it, stay normal.
-const SMALLEST_OF_NORMAL_POWERS: f64 = 1e-40;
+const MIN_NORMAL_BASE: f64 = 1e-40;
 
 /// Returns whether products of `numbers` may be subnormal.
 pub(crate) fn have_subnormal_products(numbers: &[f64]) -> bool {
-    numbers.iter().any(|number| *number != 0.0 && number.abs() < SMALLEST_OF_NORMAL_POWERS)
+    numbers.iter().any(|number| *number != 0.0 && number.abs() < MIN_NORMAL_BASE)
 }

@@ -36,7 +36,7 @@ const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::
 
 /// The maximum number of coefficients that are kept of a polynomial. Every number above [`MAX_COEFFICIENTS`] is equally
 /// wrong.
-const LONGEST_POLYNOMIAL: usize = 4096;
+const MAX_KEPT_COEFFICIENTS: usize = 4096;
 
 /// Returns the memory that the lists of one record of the scene's traces may take, in bytes. It is the memory of the
 /// polynomials of all possible detection passes of a step (collisions.md 4 and 5), within bounds.
@@ -74,7 +74,7 @@ const STORABLE_POLYNOMIALS: u64 = 1 << 27;
 const STORABLE_COEFFICIENTS: usize = 1 << 28;
 
 /// The maximum number of notes that are kept per record.
-pub(super) const NOTES: usize = 16;
+pub(super) const MAX_NOTES: usize = 16;
 
 /// A record as read by the original. Buffers are reused from record to record.
 #[derive(Debug, Clone, Default)]
@@ -105,12 +105,12 @@ impl LenientFrame {
     pub fn shrink(&mut self) {
         /// The size up to which memory is kept, in bytes. With a lower size, ordinary records would be allocated again
         /// and again.
-        const ORDINARY: usize = 4 << 20;
-        if decode::IMPULSE_MEMORY * self.impulses.capacity() > ORDINARY {
+        const MAX_REUSED_BYTES: usize = 4 << 20;
+        if decode::IMPULSE_MEMORY * self.impulses.capacity() > MAX_REUSED_BYTES {
             self.impulses = Vec::new();
         }
         let log = &self.polynomials;
-        if 8 * log.coefficients.capacity() + size_of::<usize>() * log.ends.capacity() > ORDINARY {
+        if 8 * log.coefficients.capacity() + size_of::<usize>() * log.ends.capacity() > MAX_REUSED_BYTES {
             self.polynomials = PolynomialLog::default();
             self.logged = 0;
         }
@@ -260,7 +260,7 @@ impl<R: Read> Lenient<R> {
 
     /// Notes damage that no reader stops at.
     fn note(&mut self, offset: u64, what: Malformation) {
-        if self.notes.len() < NOTES {
+        if self.notes.len() < MAX_NOTES {
             self.notes.push(self.error(offset, what));
         }
     }
@@ -407,7 +407,7 @@ impl<R: Read> Lenient<R> {
         let begin = self.source.offset();
         let keeps = !self.is_full(frame);
         let start = frame.polynomials.coefficients.len();
-        let most = if self.strict { usize::MAX } else { start + if keeps { LONGEST_POLYNOMIAL } else { 0 } };
+        let most = if self.strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
         let mut is_leading = !self.strict;
         // The bytes of each coefficient that were read, as the original keeps them.
         let mut value = [0; 8];

@@ -5,7 +5,7 @@ use super::{
     error::{List, Malformation, TraceError},
     frame::{Frame, LoggedImpulse},
     layout::Layout,
-    lenient::{Lenient, LenientFrame, NOTES},
+    lenient::{Lenient, LenientFrame, MAX_NOTES},
 };
 use crate::{scene::Scene, sim::PairKind};
 use std::{io::Read, mem::swap};
@@ -112,7 +112,7 @@ impl<R: Read> Reader<R> {
         swap(&mut frame.polynomials, &mut self.read.polynomials);
         self.note_impulses(&frame.impulses);
         self.notes.extend_from_slice(self.records.notes());
-        self.notes.truncate(NOTES);
+        self.notes.truncate(MAX_NOTES);
         Ok(true)
     }
 
@@ -178,7 +178,7 @@ impl<R: Read> Reader<R> {
             let offset = list + number * List::Impulses.entry_bytes();
             Some(TraceError::new(self.layout, record, offset, self.odd(number, impulse)?))
         });
-        let odd: Vec<_> = odd.take(NOTES).collect();
+        let odd: Vec<_> = odd.take(MAX_NOTES).collect();
         self.notes.extend(odd);
     }
 

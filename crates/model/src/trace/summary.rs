@@ -13,7 +13,7 @@ use crate::{scene::Scene, sim::pairs};
 use std::{fmt, io::Read};
 
 /// The maximum number of collisions that are listed.
-const COLLISIONS: usize = 40;
+const MAX_COLLISIONS: usize = 40;
 
 /// The contents of a trace. Its `Display` is the text that a snapshot test keeps.
 ///
@@ -106,7 +106,7 @@ impl Summary {
         let step = self.layout.step_of(record);
         self.impulses += frame.impulses.len() as u64;
         self.polynomials += frame.polynomials.len() as u64;
-        let room = COLLISIONS - self.collisions.len();
+        let room = MAX_COLLISIONS - self.collisions.len();
         self.collisions.extend(frame.impulses.iter().take(room).map(|impulse| (step, *impulse)));
     }
 }

@@ -5,8 +5,8 @@ use super::{
     super::{
         polynomial::evaluate,
         tolerances::{
-            LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_LARGEST, PARABOLA_MARGIN, PARABOLA_NEAR, PARABOLA_ROOM,
-            PARABOLA_SMALLEST, SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+            LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_MAX, PARABOLA_MIN, PARABOLA_NEAR, PARABOLA_ROOM,
+            SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
         },
     },
     Level,
@@ -71,8 +71,8 @@ fn misses(a: f64, b: f64, c: f64) -> bool {
     a < 0.0
         && b * b < product * PARABOLA_COMPLEX
         && c <= a * PARABOLA_ROOM
-        && (PARABOLA_SMALLEST..PARABOLA_LARGEST).contains(&product)
-        && (SEARCH_SMALLEST_COEFFICIENT..SEARCH_LARGEST_COEFFICIENT).contains(&-a)
+        && (PARABOLA_MIN..PARABOLA_MAX).contains(&product)
+        && (SEARCH_MIN_COEFFICIENT..SEARCH_MAX_COEFFICIENT).contains(&-a)
 }
 
 /// Returns whether the parabola is below zero on `[0, 1]` with a margin, and its zeros are near.
@@ -90,5 +90,5 @@ fn negative(a: f64, b: f64, c: f64) -> bool {
         && (a + b) + c < below
         && b.abs() <= a.abs() * PARABOLA_NEAR
         && c.abs() <= a.abs() * (PARABOLA_NEAR * PARABOLA_NEAR)
-        && (PARABOLA_SMALLEST..PARABOLA_LARGEST).contains(&size)
+        && (PARABOLA_MIN..PARABOLA_MAX).contains(&size)
 }

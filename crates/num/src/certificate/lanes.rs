@@ -6,8 +6,8 @@
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
-        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_LARGEST, PARABOLA_MARGIN, PARABOLA_NEAR,
-        PARABOLA_ROOM, PARABOLA_SMALLEST, SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_MAX, PARABOLA_MIN, PARABOLA_NEAR,
+        PARABOLA_ROOM, SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
     },
 };
 
@@ -60,8 +60,8 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let misses = a.below(0.0)
         & (b * b).lt(PARABOLA_COMPLEX * product)
         & c.le(PARABOLA_ROOM * a)
-        & within(product, PARABOLA_SMALLEST, PARABOLA_LARGEST)
-        & within(-a, SEARCH_SMALLEST_COEFFICIENT, SEARCH_LARGEST_COEFFICIENT);
+        & within(product, PARABOLA_MIN, PARABOLA_MAX)
+        & within(-a, SEARCH_MIN_COEFFICIENT, SEARCH_MAX_COEFFICIENT);
     let size = a.abs() + b.abs() + c.abs();
     let below = -PARABOLA_MARGIN * size;
     let negative = c.lt(below)
@@ -69,7 +69,7 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
         & ((a + b) + c).lt(below)
         & b.abs().le(PARABOLA_NEAR * a.abs())
         & c.abs().le((PARABOLA_NEAR * PARABOLA_NEAR) * a.abs())
-        & within(size, PARABOLA_SMALLEST, PARABOLA_LARGEST);
+        & within(size, PARABOLA_MIN, PARABOLA_MAX);
     c.below(0.0) & (misses | negative)
 }
 
@@ -129,8 +129,8 @@ pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGT
 #[inline(always)]
 fn ends<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     let modulus = coefficient.abs();
-    let largest = modulus.like(SEARCH_LARGEST_COEFFICIENT);
-    modulus.is_zero() | (modulus.at_least(SEARCH_SMALLEST_COEFFICIENT) & modulus.le(largest))
+    let largest = modulus.like(SEARCH_MAX_COEFFICIENT);
+    modulus.is_zero() | (modulus.at_least(SEARCH_MIN_COEFFICIENT) & modulus.le(largest))
 }
 
 #[cfg(test)]
@@ -138,23 +138,23 @@ mod tests {
     use super::*;
     use crate::{
         certificate::closed_form,
-        lanes::{Instructions, MOST_LANES, Work},
+        lanes::{Instructions, MAX_LANES, Work},
         polynomial::trim,
     };
     use proptest::prelude::*;
 
-    struct Ask<'a>(&'a [[f64; MOST_LANES]; 3]);
+    struct Ask<'a>(&'a [[f64; MAX_LANES]; 3]);
 
     impl Work for Ask<'_> {
-        type Output = [[f64; MOST_LANES]; 3];
+        type Output = [[f64; MAX_LANES]; 3];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
-            let mut answers = [[0.0; MOST_LANES]; 3];
-            for first in (0..MOST_LANES).step_by(Lanes::<S>::COUNT) {
+            let mut answers = [[0.0; MAX_LANES]; 3];
+            for first in (0..MAX_LANES).step_by(Lanes::<S>::COUNT) {
                 let [a, b, c] = self.0.map(|numbers| Lanes::load(simd, &numbers[first..]));
                 let masks = [never_positive(a, b, c), never_positive_line(b, c), search_ends(&[a, b, c])];
                 for (answer, mask) in answers.iter_mut().zip(masks) {
-                    let mut lanes = [0.0; MOST_LANES];
+                    let mut lanes = [0.0; MAX_LANES];
                     mask.or_zero(1.0).store(&mut lanes);
                     answer[first..first + Lanes::<S>::COUNT].copy_from_slice(&lanes[..Lanes::<S>::COUNT]);
                 }
@@ -182,7 +182,7 @@ mod tests {
         fn lanes_say_what_single_polynomials_say(lists in prop::array::uniform3(prop::array::uniform8(coefficient()))) {
             for instructions in [Instructions::default(), Instructions::plain()] {
                 let answers = instructions.run(Ask(&lists));
-                for lane in 0..MOST_LANES {
+                for lane in 0..MAX_LANES {
                     let [a, b, c] = lists.map(|numbers| numbers[lane]);
                     let expected = [
                         closed_form::never_positive(trim(&[a, b, c])).is_some(),

@@ -29,7 +29,7 @@ mod separated;
 
 use super::{
     polynomial::Polynomial,
-    tolerances::{SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT},
+    tolerances::{SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT},
 };
 
 crate::closed_set! {
@@ -106,7 +106,7 @@ fn nowhere_positive(coefficients: &[f64]) -> bool {
 fn search_ends(coefficients: &[f64]) -> bool {
     coefficients.iter().all(|coefficient| {
         let modulus = coefficient.abs();
-        modulus == 0.0 || (SEARCH_SMALLEST_COEFFICIENT..=SEARCH_LARGEST_COEFFICIENT).contains(&modulus)
+        modulus == 0.0 || (SEARCH_MIN_COEFFICIENT..=SEARCH_MAX_COEFFICIENT).contains(&modulus)
     })
 }
 

@@ -52,7 +52,7 @@ pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
 /// The maximum number of powers of two over which coefficients may spread for [`decide`] to use integers if there are
 /// errors. It is enough for the fifth powers of displacements of `1e-20` next to distances of 1. A larger number makes
 /// hostile input slower.
-const MOST_SPREAD: u64 = 400;
+const MAX_SPREAD: u64 = 400;
 
 /// Whether the detection hits within the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -135,7 +135,7 @@ pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision 
     match (outer.answer, inner.answer) {
         (_, Answer::Reached(time)) => yes([from, time], units + lower.slack_of_yes(time), Level::Subdivision),
         (Answer::Reached(first), Answer::Never) => borderline(Some([from, first]), Level::Subdivision),
-        (outer, _) if upper.spread().max(lower.spread()) > MOST_SPREAD => {
+        (outer, _) if upper.spread().max(lower.spread()) > MAX_SPREAD => {
             let to = if let Answer::Reached(first) = outer { first } else { 1.0 };
             borderline(Some([from, to]), Level::Subdivision)
         }

@@ -12,13 +12,13 @@ use super::{
 };
 
 /// The number of halvings after which a piece stays open.
-const DEEPEST: u32 = 150;
+const MAX_DEPTH: u32 = 150;
 
 /// The width, as a share of its end, below which a piece stays open; all ends are exact until then.
-const NARROWEST: f64 = 1.0 / (1_u64 << 50) as f64;
+const MIN_WIDTH: f64 = 1.0 / (1_u64 << 50) as f64;
 
 /// The number of pieces after which all others stay open. Ordinary searches need a few hundred.
-const MOST_PIECES: u32 = 5_000;
+const MAX_PIECES: u32 = 5_000;
 
 /// The multiple of its rounding below which a coefficient is noise, so that halving shows no more.
 const NOISE: f64 = 2.0;
@@ -126,7 +126,7 @@ impl PieceWalk<'_> {
         if open.begin_positive() {
             return Some(lo);
         }
-        let is_last = depth == DEEPEST || hi - lo < NARROWEST * hi || self.pieces >= MOST_PIECES;
+        let is_last = depth == MAX_DEPTH || hi - lo < MIN_WIDTH * hi || self.pieces >= MAX_PIECES;
         if !improves || is_last {
             self.first_open.get_or_insert(lo);
             return open.end_positive().then_some(hi);

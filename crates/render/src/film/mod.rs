@@ -10,13 +10,13 @@ pub use self::{gif::Gif, png::write_png};
 pub struct Rate(u16);
 
 /// The maximum rate, in pictures per second.
-pub const FASTEST: u16 = 240;
+pub const MAX_RATE: u16 = 240;
 
 impl Rate {
-    /// Creates a rate from 1 to [`FASTEST`]; `None` for other values.
+    /// Creates a rate from 1 to [`MAX_RATE`]; `None` for other values.
     #[must_use]
     pub const fn new(per_second: u16) -> Option<Self> {
-        if per_second == 0 || per_second > FASTEST { None } else { Some(Self(per_second)) }
+        if per_second == 0 || per_second > MAX_RATE { None } else { Some(Self(per_second)) }
     }
 
     /// Returns the number of pictures per second.

@@ -267,11 +267,11 @@ pub struct Columns {
 }
 
 /// The maximum number of columns of a plot.
-const MOST_COLUMNS: usize = 540;
+const MAX_COLUMNS: usize = 540;
 
 impl Columns {
     pub fn for_steps(steps: usize) -> Self {
-        Self { steps, columns: steps.clamp(1, MOST_COLUMNS) }
+        Self { steps, columns: steps.clamp(1, MAX_COLUMNS) }
     }
 
     /// Returns the indices of the steps in a column.

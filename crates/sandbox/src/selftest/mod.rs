@@ -46,7 +46,7 @@ const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
 /// The file name of the trace.
 const TRACE: &str = "trace.bin";
 /// The maximum size of a collected trace, in bytes.
-const LONGEST_TRACE: u64 = 1 << 20;
+const MAX_TRACE_BYTES: u64 = 1 << 20;
 
 /// The state of a promise on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -284,7 +284,7 @@ fn limits(attack: &Attack) -> Limits {
         wall: attack.wall.unwrap_or(Duration::from_secs(20)),
         memory: 64 << 20,
         output_bytes: 64 << 10,
-        trace_bytes: LONGEST_TRACE,
+        trace_bytes: MAX_TRACE_BYTES,
         folder_bytes: 4 << 20,
         folder_files: 100,
         processes: 16,
@@ -326,7 +326,7 @@ fn last_output(outcome: &RunOutcome) -> String {
 
 /// Checks that the folder contains the expected trace.
 fn check_left_trace(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
-    let collected = work.regular_file(TRACE, LONGEST_TRACE).and_then(|(mut file, _)| {
+    let collected = work.regular_file(TRACE, MAX_TRACE_BYTES).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);
         read.map(|_| bytes).map_err(|source| CollectError::System { name: TRACE.into(), source })

@@ -39,7 +39,7 @@ struct SharedWait {
 
 impl SharedWaits {
     const SHORTEST: Duration = Duration::from_micros(50);
-    const LONGEST: Duration = Duration::from_millis(2);
+    const MAX_PAUSE: Duration = Duration::from_millis(2);
 
     /// Adds a waiting thread. Returns the answer if no wait is needed.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
@@ -72,7 +72,7 @@ impl SharedWaits {
             if wait.due > now {
                 return true;
             }
-            wait.pause = (2 * wait.pause).min(Self::LONGEST);
+            wait.pause = (2 * wait.pause).min(Self::MAX_PAUSE);
             wait.due = now + wait.pause;
             match wait.answer(now) {
                 // A signal may have ended the wait.

@@ -23,7 +23,7 @@ use crate::{
 };
 
 /// The depth beyond which no user nests folders by accident.
-const DEEPEST: u32 = 32;
+const MAX_DEPTH: u32 = 32;
 /// The size of the blocks in which `stat` counts, in bytes.
 pub(super) const BLOCK: u64 = 512;
 
@@ -88,7 +88,7 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
 }
 
 /// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth. Entries deeper
-/// than [`DEEPEST`] are moved up into `folder`, because the process that later removes it would run out of descriptors.
+/// than [`MAX_DEPTH`] are moved up into `folder`, because the process that later removes it would run out of descriptors.
 /// Returns whether no entry was that deep. Must be called only when no process of the program is alive.
 pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();
@@ -118,7 +118,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
             let _ = std::fs::set_permissions(path_of_open(opened.as_fd()), Permissions::from_mode(mode | 0o700));
         }
         drop(opened);
-        if depth < DEEPEST {
+        if depth < MAX_DEPTH {
             if let Ok(inner) = sys::open_beneath(folder, &name, OFlags::RDONLY | OFlags::DIRECTORY) {
                 open_level(root, inner.as_fd(), depth + 1, moved);
             }
@@ -162,7 +162,7 @@ fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metada
             Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::ENOTDIR | libc::ELOOP)) => continue,
             Err(_) => return false,
         };
-        if depth == DEEPEST || !walk(inner.as_fd(), depth + 1, visit) {
+        if depth == MAX_DEPTH || !walk(inner.as_fd(), depth + 1, visit) {
             return false;
         }
     }

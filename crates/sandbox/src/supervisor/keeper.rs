@@ -35,7 +35,7 @@ use crate::{
 };
 
 /// The time after which a keeper without orders ends, so that others can use its user.
-const IDLE: Duration = Duration::from_secs(2);
+const MAX_IDLE: Duration = Duration::from_secs(2);
 /// The number of a program in its process namespace, where the supervisor is the first.
 const PROGRAM: i32 = 2;
 
@@ -125,7 +125,7 @@ impl Keeper {
                 0 => {}
                 code => return code,
             }
-            next = match sys::poll([Some(socket.as_fd())], IDLE) {
+            next = match sys::poll([Some(socket.as_fd())], MAX_IDLE) {
                 Ok([Readiness::Ready]) => RunRequest::next(socket).ok().flatten(),
                 _ => None,
             };

@@ -24,7 +24,7 @@ use crate::{
 };
 
 /// The first Landlock version that restricts signals and abstract sockets.
-const SCOPES_SINCE: i32 = 6;
+const SIGNAL_SCOPE_ABI: i32 = 6;
 
 /// Writes a [`Probe`] to standard output.
 pub(super) fn main() -> ExitCode {
@@ -182,7 +182,7 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
     probe.no_new_privileges = failure_reason(sys::no_new_privileges());
     probe.landlock = match probe.landlock_abi {
         0 => Some("the kernel has no Landlock, or it is switched off".into()),
-        version => failure_reason(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
+        version => failure_reason(walls::nothing(version >= SIGNAL_SCOPE_ABI).and_then(walls::enforce)),
     };
     let filters = |announce| {
         let own_process = Some(std::process::id() as i32);

@@ -15,7 +15,7 @@ use std::{
 use super::processes;
 
 /// The first id (systemd uses ids from 61184 on).
-const FIRST: u32 = 61_000;
+const FIRST_USER: u32 = 61_000;
 const COUNT: u32 = 184;
 
 /// A user id that is reserved until this is dropped.
@@ -33,7 +33,7 @@ const PATIENCE: Duration = Duration::from_secs(3600);
 ///
 /// If no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
 pub(super) fn take() -> io::Result<Slot> {
-    take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
+    take_of(&folder()?, FIRST_USER..FIRST_USER + COUNT, PATIENCE)
 }
 
 /// Returns the id of a run that has lost its supervisor. `None` if another run has taken the id, which then had no

@@ -31,7 +31,7 @@ const HOST: &str = "/.host";
 /// The place at which an ordinary user's prepared root shows processes, so that its copies may show them.
 const WITNESS: &str = "/.processes";
 /// The maximum number of links on a path, the same as the kernel's.
-const MOST_LINKS: u32 = 40;
+const MAX_LINKS: u32 = 40;
 /// Mount options with room for the folders, links and empty files under mounts.
 const ROOM: &str = "mode=755,size=4m,nr_inodes=20k";
 
@@ -287,7 +287,7 @@ impl FileView {
             }
             links += 1;
             let Ok(target) = std::fs::read_link(on_host(&next)) else { return Ok(None) };
-            if links > MOST_LINKS {
+            if links > MAX_LINKS {
                 return Ok(None);
             }
             if next.symlink_metadata().is_err() {

@@ -1,7 +1,7 @@
 //! Accepts calls whose polynomials are clearly right, judged by the reference's own coefficients without bounds.
 use super::Follower;
 use crate::fair::{
-    compare::{MOST, Match, Similarity},
+    compare::{MAX_SAFE_SUM, Match, Similarity},
     formulas::extent,
 };
 use fosssim_model::{
@@ -20,10 +20,10 @@ use fosssim_num::{
 };
 
 /// The comparisons of a call's polynomials that are clearly right.
-pub(super) type AtOnce = [Option<Match>; PairKind::MOST_POLYNOMIALS];
+pub(super) type AtOnce = [Option<Match>; PairKind::MAX_POLYNOMIALS];
 
 /// For each polynomial of a kind of pair, the sum of moduli above which the polynomial exceeds round-off.
-pub(super) type Floors = ByKind<[f64; PairKind::MOST_POLYNOMIALS]>;
+pub(super) type Floors = ByKind<[f64; PairKind::MAX_POLYNOMIALS]>;
 
 impl Follower<'_> {
     /// Returns the logged polynomials of a call that are clearly right. [`compare`](crate::fair::compare::compare)
@@ -36,7 +36,7 @@ impl Follower<'_> {
         index: usize,
         own: &[Polynomial],
     ) -> AtOnce {
-        let mut found = [None; PairKind::MOST_POLYNOMIALS];
+        let mut found = [None; PairKind::MAX_POLYNOMIALS];
         // Wider bounds make more coefficients round-off.
         if self.sensitivity.is_some() || self.context.looks_closely {
             return found;
@@ -92,11 +92,11 @@ fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
     let radii = BoundedValue { value: Magnitude(radius), bound: Magnitude(radius) };
-    let of = |lists: [&[BoundedValue<Magnitude>]; PairKind::MOST_POLYNOMIALS]| {
+    let of = |lists: [&[BoundedValue<Magnitude>]; PairKind::MAX_POLYNOMIALS]| {
         lists.map(|list| {
             let norm: f64 = list.iter().map(|c| c.bound.0).sum();
             let most = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
-            if norm < MOST { 1.01 * most } else { f64::INFINITY }
+            if norm < MAX_SAFE_SUM { 1.01 * most } else { f64::INFINITY }
         })
     };
     ByKind::from_fn(|kind| match kind {

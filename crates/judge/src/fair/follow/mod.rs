@@ -58,7 +58,7 @@ pub(super) struct Follower<'a> {
     /// Whether the part before the mid record, or the geometric part, has an error that can explain its result.
     tainted: [bool; 2],
     /// Polynomials that were wrong at known positions in this step.
-    wrong_formulas: ByKind<[bool; PairKind::MOST_POLYNOMIALS]>,
+    wrong_formulas: ByKind<[bool; PairKind::MAX_POLYNOMIALS]>,
     /// The pairs of the logged impulses.
     contacts: Contacts,
     /// Logged impulses that a decision has used.
@@ -140,8 +140,8 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns the logged polynomials of a call, if their root search certainly ends.
-    fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MOST_POLYNOMIALS]> {
-        let mut found = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
+    fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MAX_POLYNOMIALS]> {
+        let mut found = [Polynomial::default(); PairKind::MAX_POLYNOMIALS];
         for (number, polynomial) in found[..count].iter_mut().enumerate() {
             let logged = self.records.end.polynomials.get(index + number);
             *polynomial = contact::is_searchable(logged).then(|| Polynomial::untrimmed(logged))?;

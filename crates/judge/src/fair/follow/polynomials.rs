@@ -12,7 +12,7 @@ use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::bounded::BoundedValue;
 
 /// The comparison of each polynomial of a call; the rest of the array is unused.
-type Results = [Result<Match, Mismatch>; PairKind::MOST_POLYNOMIALS];
+type Results = [Result<Match, Mismatch>; PairKind::MAX_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
     /// Compares a pair's logged polynomials, which begin at `index`, with the expected ones. Returns whether they are
@@ -53,7 +53,7 @@ impl<'a> Follower<'a> {
         {
             let other_motion = motion(known, None);
             let other = other_motion.polynomials();
-            let others = matches(&other, &[None; PairKind::MOST_POLYNOMIALS][..count]);
+            let others = matches(&other, &[None; PairKind::MAX_POLYNOMIALS][..count]);
             if others.iter().filter(|result| result.is_err()).count()
                 < results.iter().filter(|result| result.is_err()).count()
             {

@@ -131,7 +131,7 @@ struct SingleSteps<'a> {
 
 impl<'a> SingleSteps<'a> {
     /// The maximum number of steps of a scene that are tried.
-    const MOST: u32 = 24;
+    const MAX_STEPS: u32 = 24;
 
     fn new(scene: &'a Scene) -> Self {
         let one = Scene { duration: scene.time_step, ..scene.clone() };
@@ -141,7 +141,7 @@ impl<'a> SingleSteps<'a> {
     fn hear(&mut self, after: &State, contacts: &[Contact]) {
         let before = std::mem::replace(&mut self.before, after.clone());
         self.steps += 1;
-        let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MOST).max(1));
+        let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MAX_STEPS).max(1));
         if !is_tried || self.scene.particles.len() > 200 {
             return;
         }

@@ -9,9 +9,9 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{Edit, Mistake, Row, Slip, StepMistake};
 
 /// The number of steps on which all rows are tried if no row reproduces everything.
-const PARTIAL: usize = 16;
+const MAX_PARTIAL_STEPS: usize = 16;
 /// The maximum number of computed polynomials; each takes about a microsecond.
-const WORK: u64 = 1_500_000;
+const MAX_WORK: u64 = 1_500_000;
 /// A row, with the number of wrong steps that it reproduces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Score {
@@ -58,7 +58,7 @@ impl<'a> Candidates<'a> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
         for sample in self.probes.iter().copied().chain(&self.scan.right).chain(self.others.iter().copied()) {
-            if self.trials.exceed(WORK) && samples > 0 {
+            if self.trials.exceed(MAX_WORK) && samples > 0 {
                 break;
             }
             left.retain(|candidate| self.reproduces(candidate, sample));
@@ -74,14 +74,14 @@ impl<'a> Candidates<'a> {
     fn partial(&self) -> Vec<Score> {
         self.trials.restart();
         let wrong = [self.probes.as_slice(), &self.others].concat();
-        let stride = wrong.len().div_ceil(PARTIAL).max(1);
+        let stride = wrong.len().div_ceil(MAX_PARTIAL_STEPS).max(1);
         let spread: Vec<&KeptStep> = wrong.iter().step_by(stride).copied().collect();
         let rest = wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
         let rest: Vec<&KeptStep> = rest.map(|(_, sample)| *sample).collect();
         let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
         for (number, sample) in spread.iter().chain(&rest).enumerate() {
-            if self.trials.exceed(WORK) {
+            if self.trials.exceed(MAX_WORK) {
                 break;
             }
             tried = number + 1;

@@ -12,7 +12,7 @@ use fosssim_student::{Area, Mistake, StepLog, Student, World, find};
 use std::cell::Cell;
 
 /// The maximum number of computed polynomials; each takes about a microsecond.
-const WORK: u64 = 200_000;
+const MAX_WORK: u64 = 200_000;
 
 /// Returns whether a program with this mistake logs a plainly wrong value on this scene, which no rule takes for
 /// round-off. Also false if the search would take too long, or if the course's library does that part of the work: in
@@ -38,7 +38,7 @@ pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u6
     let each = step_work(scene);
     for _ in 0..scene.steps() {
         let before = simulation.state().clone();
-        if work.get() > WORK || simulation.step(&mut capture).is_err() {
+        if work.get() > MAX_WORK || simulation.step(&mut capture).is_err() {
             return false;
         }
         let expected = &capture.records.end.polynomials;

@@ -8,11 +8,11 @@ use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 use fosssim_student::{Area, Mistake, Row, RowKind};
 
 /// The maximum number of mistakes in a set, in addition to empty stages.
-const MOST: usize = 3;
+const MAX_MISTAKES: usize = 3;
 /// The maximum number of sets of empty stages that are tried.
-const MOST_SETS: usize = 1 << 8;
+const MAX_SETS: usize = 1 << 8;
 /// The maximum number of computed polynomials; each takes about a microsecond.
-const WORK: u64 = 700_000;
+const MAX_WORK: u64 = 700_000;
 
 /// Rows that reproduce a trace together.
 pub(super) struct SeveralRows {
@@ -82,7 +82,7 @@ impl<'a> Search<'a> {
         // For each row of the set, the rows that were equally good when it was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);
-        while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MOST {
+        while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
             let (row, progress, others) = self.next(&set, best)?;
             set.push(row);
             best = progress;
@@ -116,7 +116,7 @@ impl<'a> Search<'a> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
         let mut empty = subsets(&self.stages());
-        let most = empty.len().min(MOST_SETS);
+        let most = empty.len().min(MAX_SETS);
         empty.truncate(most);
         let explains = |set: &Vec<&'static Row>| self.explains(set);
         if let Some(rows) = empty.iter().filter(|set| set.len() > 1).find(|set| explains(set)) {
@@ -143,7 +143,7 @@ impl<'a> Search<'a> {
     fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
-            if self.trials.exceed(WORK) {
+            if self.trials.exceed(MAX_WORK) {
                 return None;
             }
             if self.explains(&set) {
@@ -186,7 +186,7 @@ impl<'a> Search<'a> {
         }
         let mut sets = subsets(&sizes);
         sets.retain(|set| !set.is_empty() && fits(all - set.iter().map(|(_, size)| size).sum::<usize>()));
-        starts.extend(sets.into_iter().take(MOST).map(|set| set.into_iter().map(|(row, _)| row).collect()));
+        starts.extend(sets.into_iter().take(MAX_MISTAKES).map(|set| set.into_iter().map(|(row, _)| row).collect()));
         starts
     }
 
@@ -210,7 +210,7 @@ impl<'a> Search<'a> {
         });
         let mut best = (self.progress(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
-            if self.trials.exceed(WORK / 2) {
+            if self.trials.exceed(MAX_WORK / 2) {
                 break;
             }
             let progress = self.progress(&set);
@@ -243,7 +243,7 @@ impl<'a> Search<'a> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
-            if self.trials.exceed(WORK) {
+            if self.trials.exceed(MAX_WORK) {
                 return None;
             }
             let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
@@ -278,7 +278,7 @@ impl<'a> Search<'a> {
         let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.scan.right.iter().chain(&self.scan.wrong) {
-            if self.trials.exceed(2 * WORK) && samples > 0 {
+            if self.trials.exceed(2 * MAX_WORK) && samples > 0 {
                 break;
             }
             if self.trials.reproduced_share(&program, sample) < 1.0 {

@@ -8,7 +8,7 @@ use fosssim_model::{
 use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 
 /// The maximum number of pairs of scenes on which penalty forces between distant bodies are tried.
-const MOST_APART: usize = 5_000;
+const MAX_DISTANT_PAIRS: usize = 5_000;
 
 /// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
 /// student of the scene's assignment. Missing records and near pairs are searched separately
@@ -21,7 +21,7 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     };
     let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
     let is_theirs = move |row: &&Row| is_written(row, assignment);
-    let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MOST_APART;
+    let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MAX_DISTANT_PAIRS;
     let is_cheap = move |row: &&Row| is_small || !reaches_apart(row);
     all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| shows(scene, &counts, row))
 }

@@ -23,11 +23,11 @@ use std::collections::BTreeSet;
 use traits::Variant;
 
 /// The maximum number of examined wrong steps; for right steps four times as many.
-const MOST_STEPS: usize = 24;
+const MAX_STEPS: usize = 24;
 
 /// The maximum number of pairs times bodies that are examined in a trace, because some traits depend on all bodies
 /// between two.
-const WORK: usize = 4_000_000;
+const MAX_WORK: usize = 4_000_000;
 
 /// The probability below which a trait that random pairs have in common is reported, divided by the number of variants
 /// of its row.
@@ -37,7 +37,7 @@ const CHANCE: f64 = 2e-3;
 const EXCEPTION: u64 = 20;
 
 /// The maximum number of reported traits, if several distinguish pairs equally well.
-const MOST_TOLD: usize = 3;
+const MAX_TRAITS: usize = 3;
 
 /// A trait that wrong pairs have in common.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -54,8 +54,8 @@ pub struct PairTrait {
 
 /// Returns the near pairs that wrong steps omit or apply twice, and those that they apply once.
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
-    let steps = scan.wrong.iter().take(MOST_STEPS).chain(scan.right.iter().take(MOST_STEPS / 4));
-    let mut left = WORK / (scene.particles.len() + scene.edges.len() + 1);
+    let steps = scan.wrong.iter().take(MAX_STEPS).chain(scan.right.iter().take(MAX_STEPS / 4));
+    let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
     let variants: Vec<Variant> = traits::variants().collect();
     let of_kind = |kind| PairCounts { kind, times: [0; 3], traits: vec![[0; 3]; variants.len()] };
     let mut wrong = WrongPairs { first: None, kinds: PairKind::ALL.map(of_kind).into() };
@@ -114,7 +114,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
         right,
         exceptions,
     };
-    told.into_iter().take(MOST_TOLD).map(as_told).collect()
+    told.into_iter().take(MAX_TRAITS).map(as_told).collect()
 }
 
 /// Adds the pairs of all traces together for the explanations of a program.

@@ -35,13 +35,13 @@ use std::collections::BTreeMap;
 use study::{Candidate, Case, PolynomialStudy};
 
 /// The maximum number of guesses about a polynomial that are kept in addition to the reported one.
-const MOST_CLAIMS: usize = 128;
+const MAX_CLAIMS: usize = 128;
 
 /// The maximum number of other keys that an explanation reports.
-const MOST_OTHERS: usize = 5;
+const MAX_OTHER_KEYS: usize = 5;
 
 /// The error, relative to the size of its terms, up to which a polynomial is right except for round-off.
-const NEARLY: f64 = 1e-10;
+const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
 /// The maximum difference in cost from the best guess (see [`Candidate::cost`]) of guesses that are reported with it.
 const AS_LIKELY: f64 = 1.6;
@@ -90,7 +90,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         subjects.extend(Subject::all_of_kind(kind).iter().skip(logged));
     }
     (!subjects.is_empty()).then(|| Explanation {
-        details: distinct(details, MOST_OTHERS),
+        details: distinct(details, MAX_OTHER_KEYS),
         reproduced: count,
         samples: count,
         ..Explanation::about("missing-polynomials", About::Polynomials { subjects, found: OfPolynomials::Missing })
@@ -113,7 +113,7 @@ impl Suspect<'_> {
     /// single placeholder.
     fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
-        let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MOST_CLAIMS);
+        let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MAX_CLAIMS);
         let all: Vec<String> = guesses.chain(known_makers(&self.study)).collect();
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
@@ -136,7 +136,7 @@ impl Suspect<'_> {
             example: example::smallest(&self.study).map(|(_, example)| example),
             same_as: distinct(
                 self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned()),
-                MOST_OTHERS,
+                MAX_OTHER_KEYS,
             ),
             claims: distinct(claims, usize::MAX),
             ..Explanation::about(best.guess.key(), About::Polynomials { subjects: vec![self.study.subject], found })
@@ -235,7 +235,7 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
 fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);
-    (error < NEARLY && suspect.full().next().is_none()).then(|| Explanation {
+    (error < NEARLY_RIGHT_ERROR && suspect.full().next().is_none()).then(|| Explanation {
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         samples,
         example: example::smallest(study).map(|(_, example)| example),
@@ -254,7 +254,7 @@ fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
         suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        details: distinct(hopeless.iter().flat_map(lines), MOST_OTHERS),
+        details: distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::smallest(&first.study).map(|(_, example)| example),
         claims: distinct(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())), usize::MAX),
@@ -302,11 +302,11 @@ fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
     let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| detail(one.clone(), &subjects));
     let found = OfPolynomials::Guess(guesses[0].guess.clone());
     Explanation {
-        details: distinct(details, MOST_OTHERS),
+        details: distinct(details, MAX_OTHER_KEYS),
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
-        same_as: distinct(others.map(str::to_owned), MOST_OTHERS),
+        same_as: distinct(others.map(str::to_owned), MAX_OTHER_KEYS),
         claims: distinct(covered.iter().flat_map(|suspect| suspect.claims(suspect.full())), usize::MAX),
         ..Explanation::about(key, About::Polynomials { subjects, found })
     }

@@ -17,13 +17,13 @@ const SMALL_RESIDUAL: f64 = 1e-10;
 const INDEPENDENT: f64 = 1e-10;
 
 /// The maximum number of columns for which all triples are tried.
-const MOST_FOR_TRIPLES: usize = 110;
+const MAX_FOR_TRIPLES: usize = 110;
 
 /// The maximum number of likely columns for which all quadruples are tried.
-const MOST_FOR_QUADRUPLES: usize = 26;
+const MAX_FOR_QUADRUPLES: usize = 26;
 
 /// The maximum size of a support in matching pursuit.
-const LONGEST: usize = 8;
+const MAX_SUPPORT: usize = 8;
 
 /// Columns of equal length, prepared for fits.
 pub(super) struct DesignMatrix {
@@ -76,8 +76,8 @@ impl DesignMatrix {
         let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
         let problem = Problem { columns: self, fits: &fits, square };
         let all = self.indices.len();
-        let of_triples = if all > MOST_FOR_TRIPLES { self.likely.min(MOST_FOR_TRIPLES) } else { all };
-        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MOST_FOR_QUADRUPLES))] {
+        let of_triples = if all > MAX_FOR_TRIPLES { self.likely.min(MAX_FOR_TRIPLES) } else { all };
+        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MAX_FOR_QUADRUPLES))] {
             let mut accepted = Vec::new();
             problem.search(&mut Partial::default(), 0, among, size, &mut |chosen| {
                 if let Some(support) = self.solve(chosen, &fits)
@@ -99,7 +99,7 @@ impl DesignMatrix {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
         let mut residual = target.to_vec();
-        while chosen.len() < LONGEST {
+        while chosen.len() < MAX_SUPPORT {
             let best = (0..among)
                 .filter(|column| !chosen.contains(column))
                 .map(|column| (column, dot(&self.unit[column], &residual).abs()))

@@ -14,7 +14,7 @@ use fosssim_student::assignments::t2m2::{
 fosssim_model::drops_leading!();
 
 /// The maximum number of samples; more of them only take time.
-const MOST_CASES: usize = 1200;
+const MAX_CASES: usize = 1200;
 
 /// The number of wrong samples on which a guess is tried before it is tried on all.
 const PROBES: usize = 12;
@@ -299,17 +299,17 @@ fn forgive_small_scales(cases: &mut [Case]) {
     }
 }
 
-/// Keeps at most [`MOST_CASES`] samples, most of them wrong, in order.
+/// Keeps at most [`MAX_CASES`] samples, most of them wrong, in order.
 fn thin(cases: Vec<Case>) -> Vec<Case> {
-    if cases.len() <= MOST_CASES {
+    if cases.len() <= MAX_CASES {
         return cases;
     }
     let chosen = |right: bool, count: usize| {
         let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].right == right).collect();
         spread(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
     };
-    let wrong = chosen(false, MOST_CASES * 3 / 4);
-    let right = chosen(true, MOST_CASES - wrong.len());
+    let wrong = chosen(false, MAX_CASES * 3 / 4);
+    let right = chosen(true, MAX_CASES - wrong.len());
     let mut keep = vec![false; cases.len()];
     wrong.into_iter().chain(right).for_each(|index| keep[index] = true);
     cases.into_iter().zip(keep).filter_map(|(case, keep)| keep.then_some(case)).collect()

@@ -11,10 +11,10 @@ use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 
 /// The maximum number of wrong samples in a fit, which uses half as many right ones.
-const MOST_ROWS: usize = 240;
+const MAX_ROWS: usize = 240;
 
 /// The minimum number of samples with the coefficient; with fewer, samples that lack it are used as well.
-const FEWEST_ROWS: usize = 12;
+const MIN_ROWS: usize = 12;
 
 /// The step of which weights are multiples.
 const WEIGHT_STEP: f64 = 0.25;
@@ -24,16 +24,16 @@ const WEIGHT_STEP: f64 = 0.25;
 const SNAPPING: f64 = 1e-3;
 
 /// The largest weight that is considered a slip.
-const LARGEST_WEIGHT: f64 = 64.0;
+const MAX_WEIGHT: f64 = 64.0;
 
 /// The maximum number of other explanations of a coefficient that are reported.
-const MOST_ALTERNATIVES: usize = 3;
+const MAX_ALTERNATIVES: usize = 3;
 
 /// The maximum number of forms of a polynomial that are compared with those of other traces.
-const MOST_FORMS: usize = 64;
+const MAX_FORMS: usize = 64;
 
 /// The cost of an unexplained coefficient.
-const UNKNOWN: f64 = 20.0;
+const UNKNOWN_COST: f64 = 20.0;
 
 /// A change of one coefficient.
 enum Edit {
@@ -147,7 +147,7 @@ impl<'a> Fitting<'a> {
         let mut edits: Vec<(Edit, f64)> = terms.chain(factor).collect();
         edits.sort_by(|one, two| one.1.total_cmp(&two.1));
         if edits.is_empty() {
-            edits.push((Edit::Unknown, UNKNOWN));
+            edits.push((Edit::Unknown, UNKNOWN_COST));
         }
         FormulaGuess { power, edits }
     }
@@ -252,12 +252,12 @@ impl<'a> Fitting<'a> {
         // A dropped coefficient is known only to 1e-12, which is too inaccurate for a fit.
         let logged = |&index: &usize| logged_at(self.case(index).logged, power).is_some();
         let present: Vec<usize> = all.iter().copied().filter(logged).collect();
-        let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < FEWEST_ROWS { all } else { present }
+        let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < MIN_ROWS { all } else { present }
             .into_iter()
             .partition(|&index| self.holds(index, power, self.coefficient(index, power)));
         let few = |list: &[usize], count: usize| spread(list.len(), count).map(|index| list[index]).collect::<Vec<_>>();
-        let mut rows = few(&wrong, MOST_ROWS);
-        rows.extend(few(&right, MOST_ROWS / 2));
+        let mut rows = few(&wrong, MAX_ROWS);
+        rows.extend(few(&right, MAX_ROWS / 2));
         rows
     }
 }
@@ -269,7 +269,7 @@ fn snap(support: &Support) -> Option<Vec<(usize, f64)>> {
         .map(|&(product, weight)| {
             let steps = weight / WEIGHT_STEP;
             let whole = steps.round();
-            let is_whole = (steps - whole).abs() <= SNAPPING && whole != 0.0 && weight.abs() <= LARGEST_WEIGHT;
+            let is_whole = (steps - whole).abs() <= SNAPPING && whole != 0.0 && weight.abs() <= MAX_WEIGHT;
             is_whole.then_some((product, whole * WEIGHT_STEP))
         })
         .collect()
@@ -310,7 +310,7 @@ impl Fitting<'_> {
             let with = |form: &Vec<PolynomialDetail>| {
                 edits.iter().map(|lines| [form.as_slice(), lines].concat()).collect::<Vec<_>>()
             };
-            forms.iter().flat_map(with).take(MOST_FORMS).collect()
+            forms.iter().flat_map(with).take(MAX_FORMS).collect()
         })
     }
 
@@ -334,7 +334,7 @@ impl Fitting<'_> {
         };
         let is_of_terms = matches!(guess.edit(), Edit::Terms(_));
         let others = guess.edits[1..].iter().filter(|_| is_of_terms).filter_map(as_well);
-        self.lines(guess.power, guess.edit()).into_iter().chain(others.take(MOST_ALTERNATIVES)).collect()
+        self.lines(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
     }
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {

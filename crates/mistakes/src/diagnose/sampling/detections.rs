@@ -43,8 +43,8 @@ pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
 }
 
 /// The maximum number of wrong detections, and of right ones, that are kept per kind of pair.
-const MOST_WRONG: usize = 400;
-const MOST_RIGHT: usize = 200;
+const MAX_WRONG: usize = 400;
+const MAX_RIGHT: usize = 200;
 
 /// The samples of a trace, collected step by step; scenes without polynomials have none.
 pub struct Detections<'a> {
@@ -68,7 +68,7 @@ impl<'a> Detections<'a> {
     /// Collects the samples of a step. If the step has no result, the trace is unusable from here on, and the samples
     /// so far are kept.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
-        let is_full = self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG);
+        let is_full = self.kinds.values().all(|kind| kind.wrong >= MAX_WRONG);
         if is_full || !Layout::for_scene(self.scene).polynomials {
             return;
         }
@@ -176,7 +176,7 @@ impl Steer for Gatherer<'_> {
                 forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
             });
         let kind = &self.kinds[pair.kind];
-        if if is_right { kind.right >= MOST_RIGHT } else { kind.wrong >= MOST_WRONG } {
+        if if is_right { kind.right >= MAX_RIGHT } else { kind.wrong >= MAX_WRONG } {
             return;
         }
         let motion = PairMotion::between(self.scene, pair, q_start, q_end);

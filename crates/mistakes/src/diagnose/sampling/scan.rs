@@ -17,8 +17,8 @@ use fosssim_num::tolerances::KNOWN_STATE;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of kept steps, wrong and right.
-const MOST_WRONG: usize = 200;
-const MOST_RIGHT: usize = 40;
+const MAX_WRONG: usize = 200;
+const MAX_RIGHT: usize = 40;
 /// The number of similar steps that are all kept, after which only one out of this number is kept.
 const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
@@ -27,7 +27,7 @@ const RIGHT_ALIKE: u32 = 3;
 /// The number of wrong steps that are tried first.
 const PROBES: usize = 8;
 /// The maximum memory of kept steps, in bytes.
-const MEMORY: usize = 24 << 20;
+const MAX_MEMORY: usize = 24 << 20;
 
 /// A kept step.
 #[derive(Debug)]
@@ -73,7 +73,7 @@ pub struct Scan {
 impl Scan {
     /// Removes right steps down to the maximum number.
     pub fn keep_fewer_right(&mut self) {
-        self.right.truncate(MOST_RIGHT);
+        self.right.truncate(MAX_RIGHT);
     }
 
     /// Returns the wrong steps to be tried first: one of each kind, the cheapest first. The first difference is always
@@ -147,12 +147,12 @@ impl Scanner {
         let number = *count;
         *count += 1;
         let wanted = if difference.is_some() {
-            self.scan.wrong.len() < MOST_WRONG && (number < FIRST_ALIKE || number.is_multiple_of(ALIKE))
+            self.scan.wrong.len() < MAX_WRONG && (number < FIRST_ALIKE || number.is_multiple_of(ALIKE))
         } else {
-            self.scan.right.len() < MOST_RIGHT && number < RIGHT_ALIKE
+            self.scan.right.len() < MAX_RIGHT && number < RIGHT_ALIKE
         };
         // The first wrong step is always kept, because without one there is nothing to explain.
-        if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
+        if !wanted || (self.memory > MAX_MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }
         let context = difference.map_or(Context::default(), |_| {

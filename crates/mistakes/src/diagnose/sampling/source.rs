@@ -1,6 +1,6 @@
 //! The records of a trace for explanations: step by step, up to the end of the kept part.
 use super::compare::LoggedNumbers;
-use fosssim_judge::kept::{KeptTrace, LONGEST};
+use fosssim_judge::kept::{KeptTrace, MAX_KEPT_BYTES};
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation},
@@ -9,7 +9,7 @@ use fosssim_model::{
 use fosssim_num::tolerances::FIRST_RECORD;
 
 /// The number of records at the beginning of the trace that are always kept.
-const OPENING: usize = 25;
+const OPENING_RECORDS: usize = 25;
 const OPENING_MEMORY: usize = 4 << 20;
 
 /// The records of a trace.
@@ -80,7 +80,7 @@ impl Outline {
             Ok(()) if frame.note.is_some() => false,
             Ok(()) => {
                 self.padded += u64::from(!frame.plain);
-                if self.opening.len() < OPENING && self.opening_memory < OPENING_MEMORY {
+                if self.opening.len() < OPENING_RECORDS && self.opening_memory < OPENING_MEMORY {
                     let logged = LoggedNumbers::from(&*frame);
                     self.opening_memory += logged.bytes();
                     self.opening.push(logged);
@@ -142,7 +142,7 @@ impl<'a> StepReader<'a> {
             }
             return false;
         }
-        if self.reader.offset() > LONGEST as u64 {
+        if self.reader.offset() > MAX_KEPT_BYTES as u64 {
             return false;
         }
         let StepFrames { before, mid, end } = &mut self.frames;

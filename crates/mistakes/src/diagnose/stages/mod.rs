@@ -23,10 +23,10 @@ use events::StepFacts;
 use fosssim_model::scene::{Collision, Scene};
 
 /// The maximum number of steps that are compared.
-const MOST_STEPS: usize = 120;
+const MAX_STEPS: usize = 120;
 
 /// The maximum number of polynomials that are compared; each takes about a microsecond.
-const MOST_POLYNOMIALS: usize = 200_000;
+const MAX_POLYNOMIALS: usize = 200_000;
 
 /// The relative difference below which ratios are equal.
 const ALIKE: f64 = 1e-6;
@@ -43,9 +43,9 @@ pub(super) fn explain<'a>(
     }
     let mut work = 0;
     let facts: Vec<StepFacts> = steps
-        .take(MOST_STEPS)
+        .take(MAX_STEPS)
         .take_while(|kept| {
-            let goes_on = work < MOST_POLYNOMIALS;
+            let goes_on = work < MAX_POLYNOMIALS;
             work += kept.records.end.polynomials.len();
             goes_on
         })

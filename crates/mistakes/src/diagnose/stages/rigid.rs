@@ -16,7 +16,7 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, over};
 
 /// The angle below which a rotation counts as zero, in radians.
-const LITTLE_TURN: f64 = 1e-6;
+const MIN_TURN: f64 = 1e-6;
 
 /// Returns the fault in the geometric part, if its start is right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
@@ -263,10 +263,10 @@ impl MotionErrors {
             let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
                 // Only the remainder of such a rotation is visible, which shows neither the angle nor the direction.
-                self.turns.push(if (angle - right).abs() <= LITTLE_TURN { 1.0 } else { f64::NAN });
-            } else if right.abs() > LITTLE_TURN {
+                self.turns.push(if (angle - right).abs() <= MIN_TURN { 1.0 } else { f64::NAN });
+            } else if right.abs() > MIN_TURN {
                 self.turns.push(angle / right);
-            } else if angle.abs() > LITTLE_TURN {
+            } else if angle.abs() > MIN_TURN {
                 self.turns.push(f64::NAN);
             }
         } else {

@@ -27,7 +27,7 @@ pub(super) fn explain<'a>(
 ) -> Option<Explanation> {
     let mut capture = Capture::new(&scene.collision);
     let (mut contacts, mut entries, mut count) = (Vec::new(), Vec::new(), 0);
-    for kept in steps.filter(|kept| kept.difference.is_some()).take(super::MOST_STEPS) {
+    for kept in steps.filter(|kept| kept.difference.is_some()).take(super::MAX_STEPS) {
         reference.step(kept.step, &kept.before, &mut capture)?;
         count += 1;
         contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));

@@ -14,8 +14,8 @@ use fosssim_num::{
 /// The relative size (to the numbers, and 1) below which differences are round-off.
 pub(super) const SMALL: f64 = 1e-9;
 /// The size of the largest zone of which every subset is tried.
-const MOST_PARTICLES: usize = 8;
-const MOST_CONTACTS: usize = 5;
+const MAX_PARTICLES: usize = 8;
+const MAX_CONTACTS: usize = 5;
 
 /// A set of particles that move together.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -197,7 +197,7 @@ impl<'a> FirstRound<'a> {
             return Some(Fate::Wrong(WrongZones::Joined));
         }
         let foreign = self.foreign();
-        if zone.particles.len() > MOST_PARTICLES {
+        if zone.particles.len() > MAX_PARTICLES {
             return None;
         }
         // A part of the zone, alone or with particles of no zone.
@@ -243,7 +243,7 @@ impl<'a> FirstRound<'a> {
     /// Returns the ways to form several zones from a zone's contacts, in the order of the first contact of each.
     fn partitions(&self, zone: &Group) -> Vec<Vec<Group>> {
         let contacts = self.contacts_of(zone);
-        if contacts.len() < 2 || contacts.len() > MOST_CONTACTS {
+        if contacts.len() < 2 || contacts.len() > MAX_CONTACTS {
             return Vec::new();
         }
         let mut all: Vec<Vec<Vec<&Group>>> = vec![Vec::new()];

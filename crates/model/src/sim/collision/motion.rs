@@ -139,7 +139,7 @@ impl PairMotion {
 
     /// Returns the polynomials, followed by empty ones.
     #[inline]
-    pub(super) fn list(&self) -> [Polynomial; PairKind::MOST_POLYNOMIALS] {
+    pub(super) fn list(&self) -> [Polynomial; PairKind::MAX_POLYNOMIALS] {
         let two = |(overlap, approach): ([f64; 3], [f64; 2])| {
             let none = Polynomial::default();
             [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach), none, none]

@@ -13,14 +13,14 @@ use fosssim_num::vector::{Vec2, at};
 use strips::{PlacedParticle, Rectangle, Strips};
 
 /// The maximum ratio between the radii of one size class.
-const RANGE: f64 = 4.0;
+const MAX_RADIUS_RATIO: f64 = 4.0;
 
 /// The maximum number of kept pairs per object. With more, nearly all pairs count, and visiting all pairs needs no
 /// list.
-const MOST_PAIRS: usize = 32;
+const MAX_PAIRS_PER_OBJECT: usize = 32;
 
 /// The minimum number of pairs for a search; with fewer, a check of all pairs is cheaper.
-const FEWEST_PAIRS: usize = 1 << 10;
+const MIN_PAIRS: usize = 1 << 10;
 
 /// The pairs that may be near each other, with the memory for the next search.
 ///
@@ -73,7 +73,7 @@ impl NearbyPairs {
     /// Creates the search for the particles and edges of a scene, if it is cheaper than a check of all pairs.
     pub fn for_many(scene: &Scene, margin: f64) -> Option<Self> {
         let particles = scene.particles.len();
-        (particles * (particles / 2 + scene.edges.len()) >= FEWEST_PAIRS).then(|| Self::new(scene, margin))
+        (particles * (particles / 2 + scene.edges.len()) >= MIN_PAIRS).then(|| Self::new(scene, margin))
     }
 
     /// Creates the search for the particles and edges of a scene.
@@ -87,12 +87,12 @@ impl NearbyPairs {
         let mut sizes = Vec::new();
         let mut rest = &by_size[..];
         while let Some(&(_, largest)) = rest.first() {
-            let count = rest.partition_point(|&(_, radius)| !(size(radius) * RANGE < size(largest)));
+            let count = rest.partition_point(|&(_, radius)| !(size(radius) * MAX_RADIUS_RATIO < size(largest)));
             let (own, smaller) = rest.split_at(count.max(1));
             sizes.push(Strips::new(own, margin));
             rest = smaller;
         }
-        let most = MOST_PAIRS * (scene.particles.len() + scene.edges.len());
+        let most = MAX_PAIRS_PER_OBJECT * (scene.particles.len() + scene.edges.len());
         let (particles, edge_pairs) = (Vec::new(), Vec::new());
         Self { radii, sizes, edges: scene.edges.clone(), margin, most, particles, edge_pairs, tested: 0 }
     }
@@ -164,11 +164,11 @@ fn everywhere(_: [f64; 2]) -> [f64; 2] {
 /// Returns slightly more than `reach`, to cover all rounding on the way to a vector between two points.
 fn widen(reach: f64, places: [Vec2; 2]) -> f64 {
     let most = places.iter().fold(0.0_f64, |most, place| most.max(place.x.abs()).max(place.y.abs()));
-    reach * (1.0 + 1e-9) + most * 1e-12 + LEAST_REACH
+    reach * (1.0 + 1e-9) + most * 1e-12 + MIN_REACH
 }
 
 /// The minimum reach whose square does not underflow.
-const LEAST_REACH: f64 = 1e-150;
+const MIN_REACH: f64 = 1e-150;
 
 /// Returns the rectangle of all points that are at most `reach` from the line between two points; `None` if it is
 /// empty.

@@ -4,12 +4,12 @@
 //! Rows are numbered by a cast, which rounds toward zero. The strip around zero is therefore twice as high, and row
 //! numbers differ by no more than with floors. Few particles change their order between searches, so sorting takes few
 //! insertions.
-use super::LEAST_REACH;
+use super::MIN_REACH;
 use fosssim_num::vector::{Vec2, at};
 
 /// The factor by which strips are higher than the reach of two particles, so that rounding never puts two particles in
 /// reach more than one row apart.
-const HIGHER: f64 = 1.0 + 1e-6;
+const HEIGHT_FACTOR: f64 = 1.0 + 1e-6;
 
 /// The row from which the rounding of a position may be a relevant part of a row.
 const ROUNDED_ROW: i64 = 1 << 30;
@@ -70,8 +70,8 @@ impl Strips {
             rows: Vec::new(),
             radius,
             reach,
-            width: reach.max(LEAST_REACH),
-            density: 1.0 / (reach * HIGHER).max(LEAST_REACH),
+            width: reach.max(MIN_REACH),
+            density: 1.0 / (reach * HEIGHT_FACTOR).max(MIN_REACH),
         }
     }
 

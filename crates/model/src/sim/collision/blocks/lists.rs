@@ -2,8 +2,8 @@
 use super::{super::particle_edge::EdgeMotions, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
-    lanes::{Lanes, MOST_LANES, Plane, Simd},
-    tolerances::LANES_LARGEST_INPUT,
+    lanes::{Lanes, MAX_LANES, Plane, Simd},
+    tolerances::LANES_MAX_INPUT,
     vector::{Vec2, at},
 };
 
@@ -107,9 +107,9 @@ impl Lists {
                 }
             }
         }
-        self.particles = std::array::from_fn(|_| vec![0.0; count + MOST_LANES]);
+        self.particles = std::array::from_fn(|_| vec![0.0; count + MAX_LANES]);
         self.particles[4][..count].copy_from_slice(&bodies.radii);
-        self.edges = std::array::from_fn(|_| vec![0.0; edges + MOST_LANES]);
+        self.edges = std::array::from_fn(|_| vec![0.0; edges + MAX_LANES]);
         self.edges[8][..edges].copy_from_slice(&bodies.edge_radii);
         self.squares = bodies.normals.iter().map(|normal| normal.dot(normal)).collect();
         let vectors = bodies.points.iter().chain(&bodies.normals);
@@ -183,5 +183,5 @@ fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
 
 /// Returns whether all numbers are finite and not too large.
 fn are_moderate(numbers: &[f64]) -> bool {
-    numbers.iter().fold(true, |all, number| all & (number.abs() <= LANES_LARGEST_INPUT))
+    numbers.iter().fold(true, |all, number| all & (number.abs() <= LANES_MAX_INPUT))
 }

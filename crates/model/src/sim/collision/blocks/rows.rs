@@ -12,7 +12,7 @@ use crate::sim::{
     search::SearchCounts,
     step_error::StepError,
 };
-use fosssim_num::lanes::{Lanes, MOST_LANES, Simd, Work};
+use fosssim_num::lanes::{Lanes, MAX_LANES, Simd, Work};
 use std::ops::Range;
 
 /// The pairs from a position on, up to the next hit.
@@ -26,7 +26,7 @@ pub(super) struct Pairs<'a> {
 }
 
 /// Memory for the rows of a block of particles.
-type Rows = [f64; TWO_ROW * MOST_LANES];
+type Rows = [f64; TWO_ROW * MAX_LANES];
 
 impl Work for Pairs<'_> {
     type Output = Result<Option<Impulse>, StepError>;
@@ -35,7 +35,7 @@ impl Work for Pairs<'_> {
     fn run<S: Simd>(mut self, simd: S) -> Self::Output {
         let bodies = self.setting.bodies;
         let particles = bodies.particles();
-        let mut rows = [0.0; TWO_ROW * MOST_LANES];
+        let mut rows = [0.0; TWO_ROW * MAX_LANES];
         while self.place.first < particles {
             let first = self.place.first;
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
