@@ -130,7 +130,7 @@ async function judge() {
     document.body.classList.toggle("reads", current() === "check");
     const { verdict, accepted, difference } = answer.value;
     const others = check.others.length
-      ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; a folder of them belongs under All traces.`
+      ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; drop a folder of traces under All traces.`
       : "";
     say(
       `${file.name}: ${verdict}${difference ? ` (${difference})` : ""}, judged in ${((performance.now() - started) / 1000).toFixed(2)} s on this computer.${others}`,

@@ -22,7 +22,7 @@ impl CourseSuite {
         let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
         let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();
         if groups.is_empty() {
-            return Err("the suite hides all of its groups from the readers of the page".to_owned());
+            return Err("the suite hides all its groups from readers of the page".to_owned());
         }
         let scenes = || groups.iter().flat_map(|group| &group.scenes);
         let own: Vec<&SceneTask> = scenes().filter(|task| !is_inside(task)).collect();

@@ -59,7 +59,7 @@ struct DroppedFile<'a> {
 impl Read for DroppedFile<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let Some(count) = self.host.read(self.file, self.offset, into) else {
-            let _ = self.fault.set("it has changed or is gone; drop it again");
+            let _ = self.fault.set("it was changed or removed; drop it again");
             return Err(io::Error::other("the browser can no longer read the file"));
         };
         self.offset += count as u64;
@@ -112,7 +112,7 @@ impl<R: BufRead> Frames<R> {
                     let (bytes, decoder) = frame.into_parts();
                     let (told, made) = (decoder.get_checksum_from_data(), decoder.get_calculated_checksum());
                     if told.is_some() && told != made {
-                        return Err(io::Error::other("the content is not what was packed"));
+                        return Err(io::Error::other("the content differs from the compressed data; copy it again"));
                     }
                     Self::Next(bytes)
                 }

@@ -205,7 +205,7 @@ impl Film {
         let mut recorder = Recorder::start(kept, Layout::for_scene(&self.scene), simulation.state());
         for step in 1..=self.scene.steps() {
             if let Err(error) = simulation.step(&mut recorder) {
-                return Err(format!("there is no trace: {}", no_result(&error)));
+                return Err(format!("the trace cannot be written: {}", no_result(&error)));
             }
             if recorder.has_failed() {
                 break;

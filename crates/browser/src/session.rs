@@ -68,7 +68,7 @@ impl PageSession {
     }
 
     fn answer_parsed(&mut self, request: &[u8], host: &dyn PageHost) -> PageAnswer {
-        let parts = parts::split(request).ok_or("the request is cut")?;
+        let parts = parts::split(request).ok_or("the request is truncated")?;
         let (first, rest) = parts.split_first().ok_or("the request is empty")?;
         let request = serde_json::from_slice(first).map_err(|error| format!("the request can't be read: {error}"))?;
         let xml = rest.first().copied();

@@ -84,11 +84,11 @@ impl fmt::Display for RunEnd {
 #[must_use]
 pub fn signal_name(signal: i32) -> &'static str {
     match signal {
-        11 => "SIGSEGV: it used memory that is not its own",
+        11 => "SIGSEGV: it accessed memory that does not belong to it",
         6 => "SIGABRT: it aborted, by a failed assertion or an uncaught exception",
         8 => "SIGFPE: an integer division by zero",
         4 => "SIGILL: an instruction that this processor does not have",
-        7 => "SIGBUS: it used memory that does not exist",
+        7 => "SIGBUS: it accessed memory that does not exist",
         13 => "SIGPIPE: it wrote to a pipe without a reader",
         5 => "SIGTRAP: a breakpoint",
         15 => "SIGTERM: it ended itself",
@@ -107,10 +107,10 @@ pub fn signal_name(signal: i32) -> &'static str {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum StartProblem {
     /// The file does not exist.
-    #[error("there is no such program; check the path and build the program first")]
+    #[error("the program does not exist; check the path and build the program first")]
     NotFound,
     /// The path is that of a folder.
-    #[error("this is a folder, not a program; name the program inside it")]
+    #[error("this is a folder, not a program; give the path of the program inside it")]
     IsFolder,
     /// The path is neither a file nor a folder.
     #[error("this is not a regular file")]
@@ -122,10 +122,10 @@ pub enum StartProblem {
     #[error("permission denied; put the program where every user may read and execute it")]
     NotPermitted,
     /// The file is neither an ELF program nor a script.
-    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload what the linker wrote")]
+    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload the linker's output")]
     NotAProgram,
     /// The file is an ELF file but not a program, for example an object file or a core dump.
-    #[error("the file is {what}, not a linked program; upload what the linker wrote")]
+    #[error("the file is {what}, not a linked program; upload the linker's output")]
     NotLinked {
         /// The kind of file that was found instead.
         what: Cow<'static, str>,
@@ -142,7 +142,9 @@ pub enum StartProblem {
         here: Cow<'static, str>,
     },
     /// The file is a program for another operating system.
-    #[error("this program was built for {system}, but programs run on Linux here; build it on the grading platform")]
+    #[error(
+        "this program was built for {system}, but this machine runs Linux programs; build it on the grading platform"
+    )]
     WrongSystem {
         /// The operating system for which it was built.
         system: Cow<'static, str>,

@@ -31,7 +31,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
-mod examined;
+mod examined_trace;
 mod gather;
 mod inspected_pair;
 mod inspected_step;
@@ -41,7 +41,7 @@ mod rulings;
 mod tests;
 mod track;
 
-pub use examined::{ExaminedTrace, KeptPart, examine};
+pub use examined_trace::{ExaminedTrace, KeptPart, examine};
 pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, inspect};
 pub use inspected_step::{CallLog, InspectedCall, InspectedPass, InspectedStep, MergedZones};

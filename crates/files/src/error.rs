@@ -10,7 +10,7 @@ use std::{
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file does not exist.
-    #[error("there is no file {name}")]
+    #[error("the file {name} does not exist")]
     Missing {
         /// The file's name, escaped.
         name: String,

@@ -62,7 +62,7 @@ impl Identity {
 pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
     let file = file.map_err(|error| match error.raw_os_error() {
-        Some(libc::ENXIO) => io::Error::other("it is a socket, or a device that is not there; name a file"),
+        Some(libc::ENXIO) => io::Error::other("it is a socket, or a missing device; name a regular file"),
         _ => error,
     })?;
     let metadata = file.metadata()?;
@@ -139,7 +139,7 @@ pub fn patient(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Sen
             // Without a writer a pipe seems to be at its end.
             Ok(0) if begun.elapsed() < PIPE_PATIENCE => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
-                let text = "it is a pipe that nobody has written to for five seconds";
+                let text = "it is a pipe without a writer for five seconds";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, text));
             }
             Ok(_) => return Ok(Box::new(Cursor::new(first).chain(pipe))),

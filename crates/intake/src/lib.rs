@@ -64,7 +64,7 @@ impl ArchiveLimits {
 #[derive(Debug, Error)]
 pub enum ArchiveError {
     /// The file is not an archive of a supported kind.
-    #[error("looked for an archive ({KNOWN}), and found {0}")]
+    #[error("expected an archive ({KNOWN}), but found {0}")]
     Unknown(String),
     /// The archive cannot be read to its end.
     #[error("the archive is damaged: {0}")]
@@ -82,10 +82,10 @@ pub enum ArchiveError {
     #[error("the archive has more than {0} files")]
     Entries(usize),
     /// The archive has too many bytes.
-    #[error("the archive holds more than {0} bytes when it is unpacked")]
+    #[error("the unpacked archive has more than {0} bytes")]
     Bytes(u64),
     /// The archive's folders are nested too deeply.
-    #[error("the archive has folders that are nested more than {MAX_DEPTH} deep: {0}")]
+    #[error("the archive has folders nested more than {MAX_DEPTH} levels deep: {0}")]
     Depth(String),
     /// The archive file cannot be read, which is not the archive's fault.
     #[error("cannot read the archive: {0}")]

@@ -28,7 +28,6 @@
 
 pub mod budget;
 mod contacts;
-mod differing;
 pub mod fair;
 pub mod kept;
 mod options;
@@ -40,8 +39,8 @@ pub mod replay;
 mod samples;
 pub mod study;
 mod tally;
+mod wrong_coefficients;
 
-pub use differing::{differing, factor};
 pub use fosssim_findings::{
     Book, BookFindings, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Outcome, Overall, PairWords, Part,
     PassWords, PolynomialPlace, Power, RecordPart, RescaledCoefficient, Residuals, Role, Rules, Ruling, Stop,
@@ -49,3 +48,4 @@ pub use fosssim_findings::{
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::Unreadable;
+pub use wrong_coefficients::{differing, factor};

@@ -19,7 +19,7 @@ use std::io::Read;
 
 /// The reason why a trace cannot be judged against a recording. The recording is always at fault.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the recording can't be used: frame {frame}, byte {offset}: {message}; record it again")]
+#[error("the recording is damaged: frame {frame}, byte {offset}: {message}; record it again")]
 pub struct RecordingError {
     /// The frame, from 0.
     pub frame: u64,

@@ -10,7 +10,7 @@ use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_
 use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
-        MAX_IMPLICIT_PARTICLES, MAX_SCENE_BYTES, Scene,
+        MAX_IMPLICIT, MAX_SCENE_BYTES, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
     sim::{RootSearch, Simulation, State, StepError},
@@ -139,10 +139,8 @@ fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }
     let particles = scene.particles.len();
-    (scene.integrator.is_implicit() && particles > MAX_IMPLICIT_PARTICLES).then(|| {
-        format!(
-            "{particles} particles are too many for an implicit integrator, which can have {MAX_IMPLICIT_PARTICLES}\n"
-        )
+    (scene.integrator.is_implicit() && particles > MAX_IMPLICIT).then(|| {
+        format!("{particles} particles are too many for an implicit integrator, which can have {MAX_IMPLICIT}\n")
     })
 }
 

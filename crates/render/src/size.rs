@@ -18,10 +18,10 @@ pub struct Size {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BadSize {
     /// The text is not two numbers.
-    #[error("`{0}` is no size; write WIDTHxHEIGHT as in 640x480")]
+    #[error("`{0}` is not a size; write WIDTHxHEIGHT, for example 640x480")]
     Unreadable(String),
     /// A side is too small or too large.
-    #[error("{0}x{1} is no sensible size; width and height may be {MIN_SIDE} to {MAX_SIDE} pixels")]
+    #[error("{0}x{1} is out of range; width and height must be {MIN_SIDE} to {MAX_SIDE} pixels")]
     OutOfRange(u32, u32),
 }
 

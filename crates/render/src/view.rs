@@ -7,7 +7,7 @@ use fosssim_num::vector::Vec2;
 const MARGIN: f64 = 1.1;
 
 /// The largest coordinate for which a view is fitted; the squares and sums of larger ones are infinite.
-const MAX_COORDINATE: f64 = 1e100;
+const MAX_PLACE: f64 = 1e100;
 
 /// The maximum factor by which bodies that leave the scene widen the initial view.
 const MAX_WIDENING: f64 = 4.0;
@@ -37,9 +37,9 @@ impl Extent {
     /// Widens the box to contain the particles at `positions`.
     pub fn add(&mut self, scene: &Scene, positions: &[f64]) {
         for (particle, place) in scene.particles.iter().zip(positions.chunks_exact(2)) {
-            let radius = particle.radius.clamp(0.0, MAX_COORDINATE);
+            let radius = particle.radius.clamp(0.0, MAX_PLACE);
             // Bodies without a position in the plane (NaN) are not drawn.
-            if place.iter().all(|coordinate| coordinate.abs() < MAX_COORDINATE) {
+            if place.iter().all(|coordinate| coordinate.abs() < MAX_PLACE) {
                 self.low = Vec2::new(self.low.x.min(place[0] - radius), self.low.y.min(place[1] - radius));
                 self.high = Vec2::new(self.high.x.max(place[0] + radius), self.high.y.max(place[1] + radius));
             }
@@ -115,8 +115,7 @@ impl View {
         // For a single point, or no points, one length unit on every side.
         let fallback = 0.5 * f64::from(size.width().min(size.height()));
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { fallback };
-        let center =
-            if center.x.abs() < MAX_COORDINATE && center.y.abs() < MAX_COORDINATE { center } else { Vec2::zeros() };
+        let center = if center.x.abs() < MAX_PLACE && center.y.abs() < MAX_PLACE { center } else { Vec2::zeros() };
         Self { size, center, scale }
     }
 

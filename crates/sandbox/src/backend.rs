@@ -18,12 +18,13 @@ use super::{
     fake::FakeRun,
     fault::{SandboxError, from_setup_failure},
     job::{Job, Policy, ProgramIdentity},
+    job_files::{folder_fault, plain_name, write_files},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
-    laid::{folder_fault, plain_name, write_files},
     layers::{self, Layer, LayerReport},
+    memory_budget,
     outcome::{RunEnd, StartProblem},
-    own, program, room,
-    running::{RunningProgram, SupervisedRun},
+    own_files, program,
+    running_program::{RunningProgram, SupervisedRun},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
     sys,
     wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
@@ -379,7 +380,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
-        own: own::known_files(supervisor).iter().map(|path| wire::raw(path)).collect(),
+        own: own_files::known_files(supervisor).iter().map(|path| wire::raw(path)).collect(),
         trace: trace.map(wire::raw),
         files: Vec::new(),
         volatile: false,
@@ -390,6 +391,6 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         walls,
         limits: job.limits.clone(),
     };
-    order.volatile = job.in_memory && walls.namespaces && room::is_enough_for(order.folder_bytes());
+    order.volatile = job.in_memory && walls.namespaces && memory_budget::is_enough_for(order.folder_bytes());
     Ok(order)
 }

@@ -5,10 +5,10 @@ use std::{sync::Arc, time::Duration};
 use super::{
     fault::SandboxError,
     job::Job,
-    laid,
+    job_files,
     layers::LayerReport,
     outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem},
-    running::RunningProgram,
+    running_program::RunningProgram,
 };
 
 /// The result of a fake run.
@@ -48,7 +48,7 @@ impl FakeRun {
 
     pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<RunningProgram, SandboxError> {
         if let Some(name) = job.trace.as_ref().filter(|_| !self.trace.is_empty()) {
-            laid::write_file(job, name, &self.trace)?;
+            job_files::write_file(job, name, &self.trace)?;
         }
         let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != RunEnd::Cancelled;
         let outcome = RunOutcome {

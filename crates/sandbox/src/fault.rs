@@ -25,7 +25,7 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// The supervisor ended without a report.
-    #[error("the sandbox's supervisor was lost ({how}); its processes were ended")]
+    #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were ended")]
     Lost {
         /// A description of the supervisor's end, if known.
         how: String,
@@ -39,7 +39,7 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// The working folder cannot be used.
-    #[error("the working folder {folder}: {source}")]
+    #[error("cannot use the working folder {folder}: {source}")]
     Folder {
         /// The folder.
         folder: String,
@@ -47,7 +47,7 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// A path that the program should be able to read does not exist.
-    #[error("{path}, which the program must read: {source}")]
+    #[error("cannot read {path}, which the program needs: {source}")]
     Readable {
         /// The path.
         path: String,
@@ -55,13 +55,13 @@ pub enum SandboxError {
         source: io::Error,
     },
     /// The program was changed after it was staged.
-    #[error("{program} was changed or removed by somebody else while it was graded")]
+    #[error("{program} was changed or removed during grading by another program")]
     Changed {
         /// The program.
         program: String,
     },
     /// Processes could not be ended.
-    #[error("{count} processes of the program could not be ended; look for processes in state D on this host")]
+    #[error("{count} processes of the program could not be ended; check this host for processes in state D")]
     Survivors {
         /// The number of processes.
         count: u32,

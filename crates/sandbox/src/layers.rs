@@ -122,12 +122,12 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
             Layer::Execution,
             probe.execution.clone(),
             if probe.from_memory {
-                "in memory, because the temporary folder is mounted noexec; build steps can't run what they built there"
+                "programs run from memory, because the temporary folder is mounted noexec; build steps cannot run programs built there"
             } else {
                 "programs run from copies in the temporary folder"
             },
             true,
-            "name a temporary folder by TMPDIR in which programs may be executed",
+            "set TMPDIR to a folder in which programs may be executed",
         ),
     ]
 }
@@ -137,8 +137,8 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
     let (user, hidden) = (has_own_user(probe), probe.namespaces.is_none());
     let scopes = match (&probe.landlock, probe.landlock_abi) {
         (None, 6..) => None,
-        (None, abi) => Some(format!("Landlock here is version {abi}; signals are confined from version 6 on")),
-        (Some(_), _) => Some("there is no Landlock".into()),
+        (None, abi) => Some(format!("this host has Landlock version {abi}; signals are restricted from version 6 on")),
+        (Some(_), _) => Some("this host has no Landlock".into()),
     };
     [
         report(

@@ -11,7 +11,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use super::{outcome::StartProblem, own};
+use super::{outcome::StartProblem, own_files};
 
 /// The first bytes of an ELF file.
 const ELF_MAGIC: &[u8] = b"\x7fELF";
@@ -113,7 +113,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
     if line.ends_with('\r') {
         // The kernel takes the carriage return for the last character of the name.
         let hint =
-            ": a carriage return is part of its name, because the lines end in CR LF; convert them with dos2unix";
+            ": its name ends with a carriage return, because the lines end with CR LF; convert them with dos2unix";
         return Err(missing(line.trim_start(), hint));
     }
     let line = line.trim();
@@ -199,7 +199,7 @@ fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     // rejected too late.
     const EXECUTE: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
-    let named = [path, &resolved].into_iter().any(own::is_name);
+    let named = [path, &resolved].into_iter().any(own_files::is_name);
     let beneath = PROGRAMS.iter().chain(&LIBRARIES).any(beneath);
     if !beneath || named || is_one_of(&resolved, own) || !resolved.ancestors().all(open) {
         return Err(refused());

@@ -5,8 +5,8 @@ use fosssim_num::vector::{Vec2, at, length, over};
 use super::{
     Slip, StepMistake, Term,
     author::Student,
-    edited::TermPart,
     penalty::{self, PenaltyLayer},
+    slip_effects::TermPart,
     world::{World, add, subtract},
 };
 

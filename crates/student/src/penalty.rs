@@ -6,7 +6,7 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
-    Area, Slip, StepMistake, Term, author::Student, edited::TermPart, near_pairs::NearPairSearch, world::World,
+    Area, Slip, StepMistake, Term, author::Student, near_pairs::NearPairSearch, slip_effects::TermPart, world::World,
 };
 
 /// The layer around bodies that repels other bodies.

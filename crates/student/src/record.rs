@@ -3,7 +3,7 @@
 use super::{
     Area, Mistake,
     author::Student,
-    logged::logged_polynomial,
+    logged_polynomials::logged_polynomial,
     objects::{Contact, State},
     rounding::single,
     step::step,

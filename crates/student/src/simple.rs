@@ -5,10 +5,10 @@ use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
     Slip, Term,
-    edited::TermPart,
     objects::{Contact, Object, State},
     penalty::closest,
     response::clamp,
+    slip_effects::TermPart,
     world::{StepLog, World},
 };
 

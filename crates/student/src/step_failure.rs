@@ -5,7 +5,7 @@ use fosssim_num::rpoly::DoesNotTerminate;
 #[derive(Debug, thiserror::Error)]
 pub enum StepFailure {
     /// The course's root finder would search forever.
-    #[error("the root finder would search for ever: a polynomial is not finite")]
+    #[error("the root finder would search forever: a polynomial is not finite")]
     RootFinder(#[from] DoesNotTerminate),
     /// Newton's method cycles without converging.
     #[error("implicit-euler does not converge")]
@@ -15,6 +15,6 @@ pub enum StepFailure {
     VortexHessian,
     /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller has enough
     /// information.
-    #[error("the caller refused a polynomial, so the step was left")]
+    #[error("the caller rejected a polynomial, so the step was stopped")]
     Refused,
 }

@@ -23,7 +23,7 @@
 //! 6. A step from or to a state without a result is never right.
 //!
 //! A step with records identical to the reference's needs none of this. Polynomials that are clearly right
-//! (`follow::at_once`) need no bounds.
+//! (`follow::clearly_right`) need no bounds.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY

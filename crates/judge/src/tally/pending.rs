@@ -1,9 +1,9 @@
 //! The original's findings about polynomials (oracle-behavior.md 6.2).
 use super::{StepResult, sum_of_moduli};
 use crate::{
-    differing::{differing, factor},
     finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, RescaledCoefficient},
     progress::Remark,
+    wrong_coefficients::{differing, factor},
 };
 use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, Polynomial},

@@ -13,7 +13,7 @@ use fosssim_num::vector::Vec2;
 
 /// The maximum number of particles with an implicit integrator. Its dense matrix of (2N)² numbers then takes half a
 /// gibibyte, and solving it takes minutes per step.
-pub const MAX_IMPLICIT_PARTICLES: usize = 4096;
+pub const MAX_IMPLICIT: usize = 4096;
 
 /// The maximum number of pairs of a particle and an obstacle that are checked for coincidence, so that the time of a
 /// check does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
@@ -49,9 +49,9 @@ fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
     let steps = (time / time_step).ceil();
     if time == 0.0 {
-        report.warning(|| about(duration.tag, "the duration is zero".into(), "no step is made"));
+        report.warning(|| about(duration.tag, "the duration is zero".into(), "there are no steps"));
     } else if steps > f64::from(i32::MAX) {
-        let help = "at most 2147483647 steps are possible; the original would make none";
+        let help = "at most 2147483647 steps are possible; the original would run none";
         report.error(|| {
             about(duration.tag, format!("{time:?} seconds in steps of {time_step:?} are {steps:e} steps"), help)
         });
@@ -62,10 +62,10 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
-        report.warning(|| Problem::new(span, "the scene has no particles").help("its trace holds no state"));
+        report.warning(|| Problem::new(span, "the scene has no particles").help("its trace would contain no state"));
     }
     if let (Some(part), true) = (&parts.integrator, is_implicit(parts))
-        && count > MAX_IMPLICIT_PARTICLES
+        && count > MAX_IMPLICIT
     {
         report.error(|| {
             about(
@@ -107,7 +107,7 @@ fn normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
         let Some(HalfPlane { normal, .. }) = part.value else { continue };
         if normal.dot(&normal) == 0.0 {
             report.error(|| {
-                let help = "`nx` and `ny` must not both be zero, nor so small that their squares vanish";
+                let help = "`nx` and `ny` must not both be zero or so small that their squares vanish";
                 about(part.tag, format!("the normal of halfplane {number} has no length"), help)
             });
         }
@@ -146,7 +146,7 @@ fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
                 let help = "an edge without length has no direction; a spring on it is not a number";
                 about(
                     part.tag,
-                    format!("edge {number} joins particles {first} and {second}, which start in one place"),
+                    format!("edge {number} joins particles {first} and {second}, which start at the same position"),
                     help,
                 )
             });
@@ -162,7 +162,8 @@ fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
         if in_one_place(parts, first, second) {
             let name = part.tag.rule.name;
             report.error(|| {
-                let message = format!("`{name}` between particles {first} and {second}, which start in one place");
+                let message =
+                    format!("`{name}` between particles {first} and {second}, which start at the same position");
                 about(part.tag, message, "at distance zero it is not a number")
             });
         }
@@ -228,7 +229,7 @@ fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, re
             let partner = if particle.fixed { movable } else { 0 };
             let (other, _, with) = group[partner];
             if place > partner && rule.touches(particle.radius + with.radius) {
-                rule.report(tag, report, || format!("particles {other} and {number} start in one place"));
+                rule.report(tag, report, || format!("particles {other} and {number} start at the same position"));
             }
         }
     }

@@ -133,7 +133,7 @@ impl<'t> DocumentReader<'t, '_> {
         if declares {
             self.report.error(|| {
                 Problem::new(span, "a document type with declarations, which the original ignores")
-                    .help("remove it and write out what it declares")
+                    .help("remove it and write its declarations out")
             });
         }
     }
@@ -208,14 +208,14 @@ impl<'t> DocumentReader<'t, '_> {
                 (_, true) => (format!("a second root element `{}`", quote(name)), "only the first `scene` counts"),
                 (_, false) => (
                     format!("the root element is `{}`, not `scene`", quote(name)),
-                    "put everything into one element `scene`",
+                    "put all elements into one element `scene`",
                 ),
             };
             self.report.error(|| Problem::from_element(name, span, message).help(help));
         } else if !self.in_scene {
             self.report.error(|| {
                 Problem::from_element(name, span, "a second `scene`")
-                    .help("only the first one counts; move its elements there or to a file of their own")
+                    .help("only the first one counts; move its elements there or to another file")
             });
         }
         static SCENE: Rule = Rule { name: "scene", attributes: &[] };
@@ -298,11 +298,13 @@ impl<'t> DocumentReader<'t, '_> {
 
 fn syntax_words(error: SyntaxError) -> (String, Option<String>) {
     let (message, help) = match error {
-        SyntaxError::InvalidBangMarkup => ("`<!` starts neither a comment nor anything else known", "`<!-- ... -->`"),
+        SyntaxError::InvalidBangMarkup => {
+            ("`<!` does not start a comment or another known construct", "`<!-- ... -->`")
+        }
         SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl => ("`<?` without `?>`", "end it with `?>`"),
         SyntaxError::UnclosedComment => ("a comment without end", "end it with `-->`"),
-        SyntaxError::UnclosedDoctype => ("a document type without end", "end it with `>`"),
-        SyntaxError::UnclosedCData => ("a CDATA section without end", "end it with `]]>`"),
+        SyntaxError::UnclosedDoctype => ("a document type without its end", "end it with `>`"),
+        SyntaxError::UnclosedCData => ("a CDATA section without its end", "end it with `]]>`"),
         SyntaxError::UnclosedTag => ("a tag without end", "end it with `>` or `/>`"),
         SyntaxError::UnclosedSingleQuotedAttributeValue | SyntaxError::UnclosedDoubleQuotedAttributeValue => {
             ("a quotation mark is missing in this tag or after it", "close every value")

@@ -7,7 +7,7 @@ use quick_xml::escape::{EscapeError, unescape};
 
 use super::grammar;
 use super::model::Color;
-use super::numbers::{self, Flaw};
+use super::numbers::{self, NumberError};
 use super::problem::{Problem, Report, Severity, quote};
 use super::tag::{Attribute, Tag, list};
 use fosssim_num::vector::Vec2;
@@ -140,7 +140,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         let text = self.one_line(attribute)?;
         match numbers::integer(&text) {
             Ok(value) => Some(value),
-            Err(flaw) => self.flaw(name, &text, flaw),
+            Err(error) => self.report_number(name, &text, error),
         }
     }
 
@@ -262,12 +262,12 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
                 }
                 Some(value)
             }
-            Err(flaw) => self.flaw(attribute.name, &text, flaw),
+            Err(error) => self.report_number(attribute.name, &text, error),
         }
     }
 
-    fn flaw<T>(&mut self, name: &str, text: &str, flaw: Flaw) -> Option<T> {
-        self.complain(Severity::Error, name, || describe_flaw(text, &flaw));
+    fn report_number<T>(&mut self, name: &str, text: &str, error: NumberError) -> Option<T> {
+        self.complain(Severity::Error, name, || describe_error(text, &error));
         None
     }
 }
@@ -281,19 +281,20 @@ fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
 }
 
 /// Returns the message about a bad number: its error, and the remedy.
-fn describe_flaw(text: &str, flaw: &Flaw) -> (String, String) {
+fn describe_error(text: &str, error: &NumberError) -> (String, String) {
+    use NumberError::{Comma, Empty, NoNumber, NotFinite, NotWhole, Overflow, TooLarge, Trailing};
     let text = quote(text.trim_ascii());
-    match flaw {
-        Flaw::Empty => ("is empty".to_owned(), "write a number".to_owned()),
-        Flaw::NoNumber => (format!("must be a number, not `{text}`"), "write a number such as `-1.5e-3`".to_owned()),
-        Flaw::Trailing(prefix) => (
+    match error {
+        Empty => ("is empty".to_owned(), "write a number".to_owned()),
+        NoNumber => (format!("must be a number, not `{text}`"), "write a number such as `-1.5e-3`".to_owned()),
+        Trailing(prefix) => (
             format!("is `{text}`, which is more than a number"),
             format!("the original reads `{}` and ignores the rest", quote(prefix)),
         ),
-        Flaw::Comma(point) => (format!("is `{text}`, with a decimal comma"), format!("write `{}`", quote(point))),
-        Flaw::NotFinite => (format!("is `{text}`"), "only finite numbers are allowed".to_owned()),
-        Flaw::Overflow => (format!("is `{text}`, too large"), "the largest 64-bit number is 1.8e308".to_owned()),
-        Flaw::NotWhole => (format!("is `{text}`"), "write a whole number".to_owned()),
-        Flaw::TooLarge => (format!("is `{text}`, beyond 32 bits"), "allowed is -2147483648 to 2147483647".to_owned()),
+        Comma(point) => (format!("is `{text}`, with a decimal comma"), format!("write `{}`", quote(point))),
+        NotFinite => (format!("is `{text}`"), "only finite numbers are allowed".to_owned()),
+        Overflow => (format!("is `{text}`, too large"), "the largest 64-bit number is 1.8e308".to_owned()),
+        NotWhole => (format!("is `{text}`"), "write a whole number".to_owned()),
+        TooLarge => (format!("is `{text}`, beyond 32 bits"), "allowed is -2147483648 to 2147483647".to_owned()),
     }
 }

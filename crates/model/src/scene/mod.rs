@@ -12,7 +12,7 @@ mod element;
 mod fields;
 mod forces;
 mod grammar;
-mod known;
+mod milestones;
 mod model;
 mod numbers;
 pub mod original;
@@ -26,9 +26,9 @@ mod write;
 mod xml;
 
 pub use crate::assignments::Integrator;
-pub use checks::MAX_IMPLICIT_PARTICLES;
+pub use checks::MAX_IMPLICIT;
 pub use grammar::closest;
-pub use known::{UnknownFeature, UnknownPart};
+pub use milestones::{UnknownFeature, UnknownPart};
 pub use model::{
     Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,
 };

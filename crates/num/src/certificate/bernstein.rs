@@ -6,7 +6,7 @@
 //! header of [`super`] lists what is only measured.
 use super::{
     super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR},
-    separated::zeros_are_separated,
+    separated_zeros::zeros_are_separated,
 };
 
 /// Returns whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.

@@ -25,7 +25,7 @@
 mod bernstein;
 mod closed_form;
 pub mod lanes;
-mod separated;
+mod separated_zeros;
 
 use super::{
     polynomial::Polynomial,

@@ -29,7 +29,7 @@
 pub mod exact;
 pub(crate) mod pieces;
 pub(crate) mod range;
-mod short;
+mod short_numbers;
 
 #[cfg(test)]
 mod tests;
@@ -41,7 +41,7 @@ use super::{
 use exact::{ExactAnswer, exact_first};
 use pieces::{Answer, Search};
 use range::{Ends, Problem};
-pub use short::all_exact;
+pub use short_numbers::all_exact;
 
 /// The maximum number of polynomials of one detection.
 pub const MAX_POLYNOMIALS: usize = 4;

@@ -2,7 +2,7 @@
 //!
 //! Edges of shapes are blends of two colors. The palette holds steps from each color to the background, and a cube of
 //! all colors if there is room. Other colors are replaced by the nearest one in the palette.
-use super::{Rate, changed::ChangedArea};
+use super::{Rate, changed_area::ChangedArea};
 use crate::{color::Rgb, raster::Raster, size::Size};
 use std::{
     collections::{BTreeSet, HashMap},

@@ -1,5 +1,5 @@
 //! Encodes pictures to files: one PNG, or a GIF. Encoders receive picture by picture and hold at most two.
-mod changed;
+mod changed_area;
 mod gif;
 mod png;
 

@@ -1,7 +1,7 @@
 //! Plots detection polynomials on the step, with the intervals in which each is positive and those in which all are,
 //! like the assignment's figure 2.
 use super::{
-    Embedding,
+    PlotTarget,
     sheet::{Anchor, Ink, Sheet, Tone, WIDTH},
 };
 use crate::number::short;
@@ -47,7 +47,7 @@ const PIECE: usize = 8;
 impl PolynomialPlot<'_> {
     /// Renders the plot.
     #[must_use]
-    pub fn svg(&self, embedding: Embedding) -> String {
+    pub fn svg(&self, embedding: PlotTarget) -> String {
         let rows = self.curves.len() + usize::from(self.common.is_some());
         #[expect(clippy::cast_precision_loss, reason = "a handful")]
         let row_top = |row: usize| BOTTOM + 30.0 + ROW * row as f64;
@@ -206,7 +206,7 @@ mod tests {
             },
         ];
         let plot = PolynomialPlot { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
-        let svg = plot.svg(Embedding::Alone);
+        let svg = plot.svg(PlotTarget::File);
         assert!(svg.contains(
             "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to \
              1; the time of impact is 0.5. Each curve is scaled to its own largest value on the step.</desc>"
@@ -219,7 +219,7 @@ mod tests {
         let curve = |coefficients, zeros| PlottedPolynomial { name: String::new(), coefficients, zeros, positive: &[] };
         let (nothing, endless) = (curve(&[], Vec::new()), curve(&[f64::INFINITY, 1.0], vec![f64::NAN]));
         let svg = PolynomialPlot { title: "", curves: &[nothing, endless], common: None, impact: Some(f64::INFINITY) }
-            .svg(Embedding::Inline);
+            .svg(PlotTarget::Page);
         assert!(!svg.contains("NaN") && !svg.contains("style"), "{svg}");
     }
 }

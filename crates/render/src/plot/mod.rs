@@ -15,12 +15,12 @@ pub use sheet::STEPS_AXIS;
 
 /// The document for which a plot is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Embedding {
+pub enum PlotTarget {
     /// A separate file, which contains its style.
-    Alone,
+    File,
     /// An HTML page that has [`STYLE`] in its own style sheet, once for all plots, so the page's policy need not allow
     /// styles in the markup.
-    Inline,
+    Page,
 }
 
 /// The style sheet of all plots.

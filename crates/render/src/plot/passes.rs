@@ -1,6 +1,6 @@
 //! Plots the number of detection passes of each step, as expected and as logged.
 use super::{
-    Embedding,
+    PlotTarget,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone},
 };
 
@@ -22,7 +22,7 @@ const HEIGHT: f64 = 192.0;
 impl PassPlot<'_> {
     /// Renders the plot.
     #[must_use]
-    pub fn svg(&self, embedding: Embedding) -> String {
+    pub fn svg(&self, embedding: PlotTarget) -> String {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
         let steps = self.expected.len().max(self.actual.len());
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn differing_steps_are_marked_and_said() {
         let plot = PassPlot { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
-        let svg = plot.svg(Embedding::Inline);
+        let svg = plot.svg(PlotTarget::Page);
         let words = "2 of 4 steps have another number of detection passes; the first is step 3 with 3, expected 2";
         assert!(svg.contains(&format!("<desc>{words}</desc>")), "{svg}");
         assert_eq!(svg.matches("m0 -7l-7 7").count(), 2);
@@ -104,9 +104,9 @@ mod tests {
         let expected = vec![1; 100_000];
         let mut actual: Vec<_> = expected.iter().copied().map(Some).collect();
         actual[77_777] = Some(9);
-        let svg = PassPlot { title: "Passes", expected: &expected, actual: &actual }.svg(Embedding::Inline);
+        let svg = PassPlot { title: "Passes", expected: &expected, actual: &actual }.svg(PlotTarget::Page);
         assert_eq!(svg.matches("m0 -7l-7 7").count(), 1);
         assert!(svg.len() < 40_000);
-        let _ = PassPlot { title: "", expected: &[], actual: &[] }.svg(Embedding::Alone);
+        let _ = PassPlot { title: "", expected: &[], actual: &[] }.svg(PlotTarget::File);
     }
 }

@@ -1,6 +1,6 @@
 //! Plots residuals over the steps, on a logarithmic scale, with the tolerance as a line.
 use super::{
-    Embedding,
+    PlotTarget,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone, WIDTH},
 };
 use crate::number::{decades, short};
@@ -36,7 +36,7 @@ const HEIGHT: f64 = 284.0;
 impl ResidualPlot<'_> {
     /// Renders the plot.
     #[must_use]
-    pub fn svg(&self, embedding: Embedding) -> String {
+    pub fn svg(&self, embedding: PlotTarget) -> String {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
@@ -143,7 +143,7 @@ mod tests {
     fn plot(values: &[f64]) -> String {
         let series = [Series { name: "position", values }];
         let plot = ResidualPlot { title: "Residuals", series: &series, tolerance: 1e-10, mark: Some((3, "first")) };
-        plot.svg(Embedding::Inline)
+        plot.svg(PlotTarget::Page)
     }
 
     #[test]

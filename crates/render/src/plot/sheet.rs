@@ -1,5 +1,5 @@
 //! A sheet of SVG on which a plot is drawn.
-use super::{Embedding, STYLE};
+use super::{PlotTarget, STYLE};
 use crate::{number::pixel, svg::escape};
 use std::fmt::Write;
 
@@ -81,10 +81,10 @@ pub struct Sheet {
 
 impl Sheet {
     /// Creates a sheet with a given height.
-    pub fn new(height: f64, title: &str, description: &str, embedding: Embedding) -> Self {
+    pub fn new(height: f64, title: &str, description: &str, embedding: PlotTarget) -> Self {
         let (title, description) = (escape(title), escape(description));
         let (width, height) = (pixel(WIDTH), pixel(height));
-        let is_styled = embedding == Embedding::Inline;
+        let is_styled = embedding == PlotTarget::Page;
         let (space, font) = match is_styled {
             true => ("", ""),
             false => (" xmlns=\"http://www.w3.org/2000/svg\"", " font-family=\"sans-serif\" font-size=\"12\""),
@@ -94,7 +94,7 @@ impl Sheet {
             "<svg{space} class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\"{label}\
              {font}><title>{title}</title><desc>{description}</desc>\n"
         );
-        if embedding == Embedding::Alone {
+        if embedding == PlotTarget::File {
             let _ = writeln!(svg, "<style>{STYLE}</style>");
             let _ = writeln!(svg, "<rect class=\"pp\" width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
         }

@@ -27,7 +27,7 @@ use super::{
     job::{Job, Limits},
     layers::{Layer, is_active},
     outcome::{RunEnd, RunOutcome},
-    running::LeftFolder,
+    running_program::LeftFolder,
     supervisor::processes,
     sys,
 };
@@ -120,7 +120,7 @@ pub fn run_some(
     mut report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
     if !is_active(backend.layers(), Layer::CallFilter) {
-        return Err(SandboxError::Missing { missing: "the attacks run inside the sandbox only".into() });
+        return Err(SandboxError::Missing { missing: "the attacks run only inside the sandbox".into() });
     }
     let folder_error = |source: std::io::Error| SandboxError::Folder { folder: folder.display().to_string(), source };
     let folder = folder.canonicalize().map_err(folder_error)?;
@@ -225,7 +225,7 @@ impl Place<'_> {
         if !decoy.is_alive() {
             return Err(broken("it killed another process".into()));
         }
-        let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read any more: {e}")))?;
+        let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read: {e}")))?;
         if let Some(difference) = before.difference(&after) {
             return Err(broken(format!("it changed the host: {difference}")));
         }
@@ -257,7 +257,10 @@ impl Place<'_> {
         let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
-            return Err(format!("it does not compile here: {}", text.lines().take(3).collect::<Vec<_>>().join(" ")));
+            return Err(format!(
+                "it does not compile on this host: {}",
+                text.lines().take(3).collect::<Vec<_>>().join(" ")
+            ));
         }
         std::fs::rename(&fresh, &program).map_err(said)?;
         Ok(program)

@@ -19,7 +19,7 @@ use std::{
 use landlock::RulesetCreated;
 use seccompiler::BpfProgram;
 
-use super::{filter, filter::Purpose, processes, view, volatile, walls};
+use super::{filter, filter::Purpose, memory_folder, processes, view, walls};
 use crate::{
     mounts,
     sys::{self, Access, Resource},
@@ -105,7 +105,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     for raw in &plan.order.readable {
         if !c_string(raw).is_ok_and(|path| sys::accessible(&path, Access::READ_OK)) {
             let stage =
-                format!("let the program read {}, which every user must be able to reach", wire::path(raw).display());
+                format!("open {} for the program (every user must be able to read it)", wire::path(raw).display());
             return Err(Failure { stage, errno: libc::EACCES });
         }
     }
@@ -308,7 +308,7 @@ impl OpenedFile {
     /// Returns a copy of the program in memory that keeps the holes.
     fn copy(program: &File, most: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
-        volatile::copy_blocks(program, &mut copy, most)?;
+        memory_folder::copy_blocks(program, &mut copy, most)?;
         copy.set_permissions(Permissions::from_mode(0o555))?;
         // A file that is open for writing cannot be executed, so it is opened again for reading only.
         let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;

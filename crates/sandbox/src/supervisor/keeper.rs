@@ -24,7 +24,7 @@ use std::{
 
 use super::{
     namespaces,
-    prepared::{HeldResources, PreparedRun},
+    prepared_run::{HeldResources, PreparedRun},
     run::{self, Run},
     view,
 };

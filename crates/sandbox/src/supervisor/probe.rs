@@ -101,10 +101,7 @@ fn try_execution() -> (Option<String>, bool) {
         Ok(()) => (None, false),
         Err(error) if error.raw_os_error() == Some(libc::EACCES) => {
             let why = in_memory().err().map(|memory| {
-                format!(
-                    "nothing may be executed in {} ({error}), and not in memory either ({memory})",
-                    folder.display()
-                )
+                format!("programs cannot be executed in {} ({error}) or in memory ({memory})", folder.display())
             });
             (why, true)
         }

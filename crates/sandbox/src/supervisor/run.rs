@@ -22,7 +22,7 @@ use super::{
     group::Group,
     holdings, locks, modes,
     namespaces::{self, Side},
-    prepared::{HeldResources, PreparedRun},
+    prepared_run::{HeldResources, PreparedRun},
     processes, slot,
     streams::CapturedStream,
 };
@@ -131,9 +131,9 @@ impl Run {
         let trace = order.trace.clone().map(CString::new).transpose();
         let trace = trace.map_err(|error| Failure::new("name the trace", &error.into()))?;
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
-        let slot = slot.map_err(stage("give the working folder away"))?;
+        let slot = slot.map_err(stage("change the owner of the working folder"))?;
         if order.volatile {
-            hand_over(&control, folder.as_fd()).map_err(stage("hand the working folder over"))?;
+            hand_over(&control, folder.as_fd()).map_err(stage("send the working folder to the grader"))?;
         }
         let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
@@ -226,7 +226,8 @@ impl Run {
         };
         // Only root reads files that a submission leaves in memory.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
-            folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
+            folder::give(self.folder.as_fd(), *owner, *group)
+                .map_err(stage("restore the owner of the working folder"))?;
         }
         // Cleaning up counts for the run.
         let wall = self.began.elapsed();
@@ -246,7 +247,7 @@ impl Run {
         // A process that the kernel blocks is the host's problem; the program has caused any other that did not end.
         self.blame_if(
             left.count > 0 && !left.held,
-            RunEnd::Violation { call: "none, but it left processes that do not end".into() },
+            RunEnd::Violation { call: "none, but it left processes that did not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
         self.blame_if(out_of_memory, RunEnd::MemoryLimit);
@@ -404,7 +405,7 @@ impl Run {
             call.push_str(match flags & libc::CLONE_THREAD as u64 {
                 _ if namespace => " (it made a namespace)",
                 0 => " (it started another process)",
-                _ => " (it made a thread with descriptors of its own)",
+                _ => " (it created a thread with separate descriptors)",
             });
         } else if call.ends_with("fork") {
             call.push_str(" (it started another process)");

@@ -68,7 +68,7 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
 
 /// Returns the folder of the locks, created on first use in the first usual place that is writable.
 fn folder() -> io::Result<PathBuf> {
-    let mut problem = io::Error::other("there is neither /run nor /tmp");
+    let mut problem = io::Error::other("neither /run nor /tmp exists");
     for base in ["/run", "/var/tmp", "/tmp"] {
         match folder_in(Path::new(base)) {
             Ok(folder) => return Ok(folder),

@@ -16,7 +16,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use super::{volatile, walls};
+use super::{memory_folder, walls};
 use crate::{
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
@@ -94,7 +94,7 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
     let real = wire::path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
     lay_out(&real, &from, order)
-        .and_then(|()| volatile::add(&real, files))
+        .and_then(|()| memory_folder::add(&real, files))
         .map_err(stage("put the working folder into memory"))?;
     hide_own(order, &real)?;
     close_root()
@@ -205,9 +205,9 @@ fn close_root() -> Result<(), Failure> {
 /// Mounts a file system in memory at the path, with a copy of another folder's contents.
 fn lay_out(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
+    let options = CString::new(memory_folder::options(order)).map_err(io::Error::other)?;
     mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.tools)?;
-    volatile::copy(from, folder)
+    memory_folder::copy(from, folder)
 }
 
 fn text(path: &Path) -> Result<CString, Failure> {

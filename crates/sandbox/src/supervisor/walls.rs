@@ -21,7 +21,7 @@ use landlock::{
 };
 
 use crate::{
-    own::{self, AllowedPath},
+    own_files::{self, AllowedPath},
     sys::{self, OFlags},
     wire::{self, RunOrder},
 };
@@ -138,7 +138,7 @@ impl Places {
 
     /// Adds a place like [`Places::add`], but without the grader's own files below the path.
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
-        for allowed in own::around(path, own) {
+        for allowed in own_files::around(path, own) {
             match allowed {
                 AllowedPath::Whole(path) => self.add(&path, access),
                 AllowedPath::Listing(path) => self.add(&path, access & AccessFs::ReadDir),

@@ -12,7 +12,7 @@ use crate::{
     Area, Mistake,
     assignments::t2m2::{Inputs, Subject},
     author::Student,
-    logged::logged_polynomial,
+    logged_polynomials::logged_polynomial,
     objects::{Contact, Object, Pair},
     rounding::single,
     step_failure::StepFailure,
@@ -24,12 +24,12 @@ mod basis;
 mod factorized;
 mod frame;
 mod handover;
-mod normalized;
+mod normalization;
 mod particle_edge;
 mod particle_half_plane;
 mod particle_particle;
 mod quintic;
-mod wide;
+mod wide_numbers;
 
 use frame::Axes;
 use particle_edge::alpha;
@@ -234,7 +234,7 @@ pub fn detect(
         return Ok(None);
     }
     let mut lists = polynomials(student, &motion);
-    normalized::normalize(student, &motion, &mut lists);
+    normalization::normalize(student, &motion, &mut lists);
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }

@@ -7,7 +7,7 @@ use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
     basis, factorized, quintic,
-    wide::WideNumber,
+    wide_numbers::WideNumber,
 };
 use crate::{Area, Mistake, author::Student};
 

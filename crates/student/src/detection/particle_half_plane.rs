@@ -7,7 +7,7 @@ use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
     basis,
-    wide::WideNumber,
+    wide_numbers::WideNumber,
 };
 use crate::{Area, Mistake, author::Student};
 

@@ -1,8 +1,8 @@
 //! The observer that follows a submission through one step, and counts the differences that it cannot follow.
 //!
 //! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows the decisions, and
-//! `at_once` skips the bounds of polynomials that are clearly right.
-mod at_once;
+//! `clearly_right` skips the bounds of polynomials that are clearly right.
+mod clearly_right;
 mod decisions;
 mod passes;
 mod polynomials;
@@ -19,7 +19,7 @@ use crate::{
     contacts::Contacts,
     finding::{Finding, FindingDetail, Part},
 };
-use at_once::Floors;
+use clearly_right::Floors;
 use decisions::OwnImpact;
 use fosssim_model::{
     scene::Collision,

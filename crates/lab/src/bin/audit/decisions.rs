@@ -109,7 +109,7 @@ impl Decisions {
         }
         for ((reason, [hits, misses]), first) in REASONS.iter().zip(self.differ).zip(&self.first) {
             if hits + misses > 0 {
-                let _ = writeln!(text, "  {reason}: it finds {hits} impacts that are none, and misses {misses}");
+                let _ = writeln!(text, "  {reason}: it reports {hits} false impacts, and misses {misses}");
             }
             if let Some((index, what)) = first {
                 let _ = writeln!(text, "    first in detection {index}, {what}");

@@ -153,7 +153,7 @@ impl AuditTally {
         // The reason for the exit code comes last.
         let _ = match &self.first {
             None => {
-                writeln!(text, "\ndisagreements: 0. Where a certificate excludes an impact, the search finds none.")
+                writeln!(text, "\ndisagreements: 0. If a certificate excludes an impact, the search finds none.")
             }
             Some((index, what)) => {
                 writeln!(text, "\ndisagreements: {}. First: detection {index}, {what}", self.disagreements)

@@ -1,7 +1,7 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
+    applicable_rows::applicable,
     resimulate::ApproachForm,
-    shown::applicable,
     trials::{Program, Trials},
 };
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};

@@ -9,19 +9,19 @@
 //!
 //! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
 mod alignment;
+mod applicable_rows;
 mod candidates;
-mod denied;
+mod combinations;
+mod contradictions;
 mod example;
 mod refute;
 mod resimulate;
-mod several;
-mod shown;
 mod trials;
 
+pub use applicable_rows::can_show;
+pub(super) use combinations::is_empty_stage;
 pub use refute::shows;
 pub(super) use refute::shows_within;
-pub(super) use several::is_empty_stage;
-pub use shown::can_show;
 
 use super::{
     Detail, Explanation,
@@ -29,10 +29,10 @@ use super::{
     sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, first_difference, sample_trace},
 };
 use candidates::Candidates;
+use combinations::SeveralRows;
 use fosssim_model::{scene::Scene, trace::Layout};
 use fosssim_student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use resimulate::{ApproachForm, resimulate};
-use several::SeveralRows;
 use trials::Trials;
 
 /// Searches the catalogue for the mistake that explains a trace.
@@ -88,7 +88,7 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
         let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
         return only(Explanation::for_other_scene(has_length));
     }
-    let denies = denied::find_denied(scene, &scan);
+    let denies = contradictions::find_denied(scene, &scan);
     let (mut explanations, is_settled) = explain_wrong_steps(reference, scene, &mut scan);
     explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
     if !explanations.is_empty() || scan.outline.padded == 0 {
@@ -115,7 +115,7 @@ fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut 
         if is_complete {
             return (explanation.into_iter().collect(), true);
         }
-        if let Some(several) = several::find_set(reference, scene, scan, correct) {
+        if let Some(several) = combinations::find_set(reference, scene, scan, correct) {
             return (together(reference, scene, scan, correct, &several), true);
         }
         partly = partly.or(explanation);

@@ -1,7 +1,7 @@
 //! Decides whether a mistake would show on a scene. A program that was right on it does not make the mistake.
 use super::{
+    applicable_rows::can_show,
     resimulate::{resimulate, step_work},
-    shown::can_show,
 };
 use crate::diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial};
 use fosssim_model::{

@@ -2,7 +2,7 @@
 //!
 //! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They
 //! are nearly always constant, which one computation modulo a prime shows at a fraction of the cost.
-use super::{super::short::split, dyadic::Dyadic};
+use super::{super::short_numbers::split, dyadic::Dyadic};
 use num_bigint::{BigInt, Sign};
 
 /// A prime: `2^61 - 1`.

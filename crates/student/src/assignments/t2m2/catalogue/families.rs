@@ -25,8 +25,8 @@ struct MistakeFamily {
     rows: &'static [(&'static str, &'static [FamilyCell])],
 }
 
-const SUPPLIED: FamilyCell = No("the approach of edges is supplied; whoever changes it changes all of it");
-const PRODUCTS: FamilyCell = No("the products of the overlap are told one by one");
+const SUPPLIED: FamilyCell = No("the approach of edges is supplied, so students change it as a whole");
+const PRODUCTS: FamilyCell = No("the products of the overlap are separate rows");
 const ONE_RADIUS: FamilyCell = No("a half-plane has no radius");
 const AT_REST: FamilyCell = No("half-planes do not move");
 const ONE_IS_ENOUGH: FamilyCell = No("it holds a tolerance of the rules, for which one kind is enough");
@@ -38,8 +38,8 @@ const PAIRS: MistakeFamily = MistakeFamily {
             "displacements reversed",
             &[
                 Is("pp-displacements-swapped"),
-                No("told by what it makes of all inputs"),
-                No("told by what it makes of all inputs"),
+                No("recognized by its effect on all inputs"),
+                No("recognized by its effect on all inputs"),
             ],
         ),
         ("positions' index", &[Is("pp-position-index"), Is("pe-position-index"), Is("ph-position-index")]),
@@ -57,7 +57,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
             &[
                 Is("pp-first-still"),
                 Is("pe-particle-still"),
-                No("nothing moves then: told as a polynomial cut to its constant"),
+                No("without motion only the constant of the polynomial remains"),
             ],
         ),
         ("second body still", &[Is("pp-second-still"), Is("pe-edge-still"), AT_REST]),
@@ -89,7 +89,11 @@ const PAIRS: MistakeFamily = MistakeFamily {
         ("tiny error", &[Is("pp-tiny-error"), ONE_IS_ENOUGH, ONE_IS_ENOUGH]),
         (
             "one component only",
-            &[Is("pp-x-only"), No("told by what it makes of all inputs"), No("told by what it makes of all inputs")],
+            &[
+                Is("pp-x-only"),
+                No("recognized by its effect on all inputs"),
+                No("recognized by its effect on all inputs"),
+            ],
         ),
         ("approach negated", &[Is("pp-approach-negated"), Is("pe-approach-negated"), Is("ph-approach-negated")]),
         ("approach, slope's sign", &[Is("pp-approach-slope-sign"), SUPPLIED, Is("ph-approach-slope-sign")]),
@@ -135,7 +139,7 @@ const ENDS: MistakeFamily = MistakeFamily {
         ("its particle's radius", &[Is("pe-first-end-radius"), Is("pe-second-end-radius")]),
         ("contact vector to it", &[Is("pe-contact-first-end"), Is("pe-contact-second-end")]),
         ("alone in the zone", &[Is("zones-one-endpoint"), Is("zones-other-endpoint")]),
-        ("not pushed", &[No("who forgets one forgets the last"), Is("response-one-endpoint")]),
+        ("not pushed", &[No("a student who omits one end omits the last"), Is("response-one-endpoint")]),
     ],
 };
 
@@ -158,10 +162,13 @@ const PLACES: MistakeFamily = MistakeFamily {
     rows: &[
         ("contact alone", &[Is("loop-first-only"), Is("loop-last-only")]),
         ("contact left out", &[Is("loop-first-skipped"), Is("loop-last-skipped")]),
-        ("contact of a pass alone", &[Is("ct-first-only"), No("contacts are resolved as they are found")]),
+        ("contact of a pass alone", &[Is("ct-first-only"), No("contacts are resolved immediately")]),
         ("zone alone", &[Is("geometric-first-zone-only"), Is("geometric-last-zone-only")]),
         ("zone left out", &[Is("geometric-first-zone-skipped"), Is("geometric-last-zone-skipped")]),
-        ("half-plane alone", &[Is("pairs-first-half-plane-only"), No("who keeps one result keeps the first object's")]),
+        (
+            "half-plane alone",
+            &[Is("pairs-first-half-plane-only"), No("a student who keeps one result keeps the first object's")],
+        ),
         ("zone's flag alone", &[Is("zones-flag-lost"), Is("zones-flag-overwritten")]),
         ("impulse alone", &[Is("loop-first-only"), Is("loop-last-wins")]),
     ],
@@ -206,7 +213,7 @@ const SUMS: MistakeFamily = MistakeFamily {
             &[
                 Is("failsafe-center-at-end"),
                 No("a motion has no end"),
-                No("it is the same momentum but for round-off: momentum-from-end"),
+                No("it is the same momentum up to round-off: momentum-from-end"),
                 Is("failsafe-inertia-at-end"),
             ],
         ),
@@ -266,7 +273,7 @@ const ALONE: &[(&str, &str)] = &[
     ("pe-contact-alpha-", "only an edge has alpha"),
     ("pe-contact-other-end", "only an edge has alpha"),
     ("pe-contact-nearest-end", "only an edge has ends"),
-    ("pe-radius-index", "another one's radius, beside that of the first edge"),
+    ("pe-radius-index", "the radius of another body; the first edge's is a separate row"),
     ("ph-overlap-signed", "only a half-plane has sides"),
     ("ph-first-half-plane", "the loops over particles and edges already have their indices"),
     ("ph-no-normal-square", "only a half-plane has a normal"),
@@ -298,7 +305,7 @@ fn every_cell_is_a_row_or_has_its_reason() {
     for (name, side, cell) in cells() {
         match cell {
             Is(id) => assert!(find(id).is_some_and(|row| row.kind == RowKind::Wrong), "{name}, {side}: no row {id}"),
-            No(reason) => assert!(reason.contains(' '), "{name}, {side}: why is there none?"),
+            No(reason) => assert!(reason.contains(' '), "{name}, {side}: the reason for the missing row is empty"),
         }
     }
     for (name, cells) in PAIRS.rows {
@@ -322,5 +329,5 @@ fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     assert!(gaps.is_empty(), "which rows are like these for other kinds of pairs? {gaps:?}");
     let vain: Vec<&str> =
         ALONE.iter().map(|(id, _)| *id).filter(|id| !CATALOGUE.iter().any(|row| row.id.starts_with(id))).collect();
-    assert!(vain.is_empty(), "{vain:?} name no row");
+    assert!(vain.is_empty(), "{vain:?} do not name a row");
 }

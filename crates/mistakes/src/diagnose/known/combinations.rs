@@ -2,7 +2,7 @@
 //!
 //! A row is added if the simulation of the wrong steps then follows the log further. A set is an explanation only if it
 //! reproduces everything, including right steps, and no row can be omitted.
-use super::{plausibility, resimulate::ApproachForm, shown::applicable, trials::Trials};
+use super::{applicable_rows::applicable, plausibility, resimulate::ApproachForm, trials::Trials};
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 use fosssim_student::{Area, Mistake, Row, RowKind};

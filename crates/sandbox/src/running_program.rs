@@ -118,7 +118,7 @@ impl RunningProgram {
         let report = match event {
             Event::Done(report) => Ok(report),
             Event::Failed(failure) => Err(from_setup_failure(failure)),
-            Event::Ready { .. } => Err(SandboxError::Lost { how: "it spoke out of turn".into() }),
+            Event::Ready { .. } => Err(SandboxError::Lost { how: "it sent an unexpected message".into() }),
         };
         let keeper = supervised.host.rest(report.as_ref().ok());
         let report = report?;

@@ -8,7 +8,7 @@ use fosssim_student::{Area, Student, find, trace_within};
 use std::{cell::Cell, collections::BTreeMap};
 
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
-const MAX_SIMULATED_TRACES: usize = 6;
+const MAX_TRACES: usize = 6;
 
 /// The number of polynomials in a step after which a program counts as endless.
 const MAX_STEP_POLYNOMIALS: usize = 200_000;
@@ -36,8 +36,7 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
     let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MAX_STEP_POLYNOMIALS) {
         Ok(trace) | Err((trace, _)) => !find_in_trace(scene, Source::whole(&trace)).is_empty(),
     };
-    let mut of_end =
-        wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_SIMULATED_TRACES);
+    let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 

@@ -22,7 +22,7 @@ pub(super) struct HeldResources {
 impl HeldResources {
     /// Takes the resources that the order requires.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
-        let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
+        let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
         let group = order.walls.group.then(|| Group::make(order)).transpose();
         Ok(Self { slot, group: group.map_err(stage("make a control group"))? })
