@@ -1,6 +1,6 @@
 //! Answers `check` with the same reports as the command.
 use crate::{
-    dropped::{PageHost, ReadFault, ToldProgress, open},
+    dropped::{PageHost, PageProgress, ReadFault, open},
     parts::PageAnswer,
     scenes,
 };
@@ -45,7 +45,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
-    let (mut told, mut wrong) = (ToldProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
+    let (mut told, mut wrong) = (PageProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
     let heard = &mut BothObservers(&mut told, &mut wrong);
     let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
     let outcome = &examined.outcome;

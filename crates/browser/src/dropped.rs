@@ -27,12 +27,12 @@ pub trait PageHost: Sync {
 }
 
 /// Forwards the progress of judging to the page.
-pub(crate) struct ToldProgress<'a> {
+pub(crate) struct PageProgress<'a> {
     pub(crate) host: &'a dyn PageHost,
     pub(crate) all: u32,
 }
 
-impl Progress for ToldProgress<'_> {
+impl Progress for PageProgress<'_> {
     fn step_judged(&mut self, step: u32, _: &[Remark]) {
         self.host.progress(step, self.all);
     }

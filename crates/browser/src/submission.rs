@@ -1,6 +1,6 @@
 //! The traces of a submission, with points by a suite, as in `grade --traces`.
 use crate::{
-    dropped::{PageHost, ReadFault, ToldProgress, open},
+    dropped::{PageHost, PageProgress, ReadFault, open},
     parts::PageAnswer,
 };
 use fosssim_grading::{
@@ -85,7 +85,7 @@ impl DroppedSubmission {
             true => Box::new(open(host, 0, &fault).take(self.plan.limits.trace)),
             false => Box::new(empty()),
         };
-        let mut heard = ToldProgress { host, all: task.scene.steps() };
+        let mut heard = PageProgress { host, all: task.scene.steps() };
         let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut heard);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));

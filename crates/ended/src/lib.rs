@@ -142,9 +142,7 @@ pub enum StartProblem {
         here: Cow<'static, str>,
     },
     /// The file is a program for another operating system.
-    #[error(
-        "this program was built for {system}, but this machine runs Linux programs; build it on the grading platform"
-    )]
+    #[error("this program was built for {system}, but Linux is needed; build it on the grading platform")]
     WrongSystem {
         /// The operating system for which it was built.
         system: Cow<'static, str>,

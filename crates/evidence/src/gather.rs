@@ -1,6 +1,6 @@
 //! Reads a trace again, together with the reference.
 use crate::{
-    inspected_step::{InspectedStep, Inspector, WantedCalls, go_on_from},
+    inspected_step::{InspectedStep, Inspector, WantedCalls, continue_from},
     rulings::StepRuling,
     track::{Track, Window},
 };
@@ -349,6 +349,6 @@ impl Steer for PassCount<'_> {
         if let Some(mid) = self.mid {
             self.apart = distances(state, mid);
         }
-        go_on_from(self.mid, state)
+        continue_from(self.mid, state)
     }
 }

@@ -305,12 +305,12 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
 
 impl Steer for Inspector<'_> {
     fn synchronize(&mut self, state: &mut State) -> Resume {
-        go_on_from(self.mid, state)
+        continue_from(self.mid, state)
     }
 }
 
 /// Continues a step from the trace's mid record, if that has the scene's size.
-pub(crate) fn go_on_from(mid: Option<&State>, state: &mut State) -> Resume {
+pub(crate) fn continue_from(mid: Option<&State>, state: &mut State) -> Resume {
     match mid {
         Some(mid) if mid.positions.len() == state.positions.len() => {
             state.clone_from(mid);

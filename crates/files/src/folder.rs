@@ -20,7 +20,7 @@ use std::{
 };
 
 /// The flags for opening files: never through a link, never waiting, never inherited.
-const CLOSED: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
+const SAFE_FLAGS: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
 
 /// The bits of a new folder's mode, before the mask.
 const FOLDER_MODE: u32 = 0o777;
@@ -90,7 +90,7 @@ impl Folder {
     /// # Errors
     /// If the folder cannot be read.
     pub fn names(&self) -> io::Result<Vec<OsString>> {
-        let flags = OFlags::RDONLY | OFlags::DIRECTORY | CLOSED;
+        let flags = OFlags::RDONLY | OFlags::DIRECTORY | SAFE_FLAGS;
         let mut names = Vec::new();
         for entry in Dir::new(openat(&*self.fd, ".", flags, Mode::empty())?)? {
             let entry = entry?;
@@ -107,7 +107,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be opened; [`io::ErrorKind::NotFound`] if it was removed.
     pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
-        let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | CLOSED, Mode::empty()) {
+        let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | SAFE_FLAGS, Mode::empty()) {
             Ok(fd) => File::from(fd),
             Err(Errno::LOOP | Errno::NXIO | Errno::NODEV) => return Ok(FolderEntry::Other),
             Err(error) => return Err(error.into()),
@@ -192,7 +192,7 @@ impl Folder {
     /// # Errors
     /// If another kind of entry has its name.
     pub fn own_file(&self, name: &str) -> Result<File, FileError> {
-        let flags = OFlags::RDWR | OFlags::CREATE | CLOSED;
+        let flags = OFlags::RDWR | OFlags::CREATE | SAFE_FLAGS;
         let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
         let file = opened.map_err(|error| FileError::not_opened(name.to_owned(), error.into()))?;
         let file = File::from(file);
@@ -248,7 +248,7 @@ impl Folder {
     /// Opens the entry at a path of names; each name is looked up in the folder before it.
     fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
         let (above, last) = self.above(Path::new(name))?;
-        Ok(openat(&*above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
+        Ok(openat(&*above, last, OFlags::RDONLY | SAFE_FLAGS, Mode::empty())?.into())
     }
 
     /// Returns the folder of a path's last name, and that name.
@@ -284,7 +284,7 @@ impl AsFd for Folder {
 
 /// Returns the subfolder `name`.
 fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
-    openat(above, name, OFlags::PATH | OFlags::DIRECTORY | CLOSED, Mode::empty()).map_err(|error| {
+    openat(above, name, OFlags::PATH | OFlags::DIRECTORY | SAFE_FLAGS, Mode::empty()).map_err(|error| {
         let is_link = statat(above, name, AtFlags::SYMLINK_NOFOLLOW)
             .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink);
         if is_link { io::Error::from_raw_os_error(libc::ELOOP) } else { error.into() }

@@ -55,7 +55,7 @@ struct StepSlot {
     /// Whether the fair rules need the reference's own run.
     is_extraordinary: bool,
     /// Whether the reference's own run must be known before the step is judged.
-    is_put_off: bool,
+    is_deferred: bool,
     error: Option<StepError>,
     /// Whether more polynomials must be compared than were kept.
     beyond_limit: bool,
@@ -394,7 +394,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             has_judged &= reach.has_result(step);
             slot.fair = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
-            let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
+            let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair));
             let identical = slot.result.identical;
             let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.rest());
             if work > budget.rest() && budget.widen() {
@@ -406,7 +406,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         if has_judged {
             judging.add(&slot.fair);
         } else {
-            judging.give_up(step);
+            judging.stop_judging(step);
             self.shape.fair = None;
             slot.fair = StepJudgement::default();
         }

@@ -61,7 +61,7 @@ const NAME: &[u8] = b"FOSSSimOracle";
 
 /// Returns the name for messages, and the arguments, if the original is to be replaced: by the program's name
 /// `FOSSSimOracle...`, or by the first word, `original`.
-fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
+fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
     let program = program.as_bytes();
     let file = program.rsplit(|&byte| byte == b'/').next().unwrap_or_default();
@@ -78,7 +78,7 @@ fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
 /// The words of the command line for other commands, with the program's own name first.
 pub fn run_if_meant(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
     let words: Vec<OsString> = env::args_os().collect();
-    match meant(&words) {
+    match parse_call(&words) {
         Some((program, words)) => {
             outside.prepare();
             Ok(main(&program, words, outside))
@@ -137,16 +137,19 @@ mod tests {
 
     #[test]
     fn the_name_decides_by_its_beginning_and_not_by_its_folder() {
-        let meant = |words: &[&str]| {
+        let parse_call = |words: &[&str]| {
             let words: Vec<OsString> = words.iter().map(OsString::from).collect();
-            meant(&words).map(|(name, rest)| (String::from_utf8(name).unwrap(), rest.len()))
+            parse_call(&words).map(|(name, rest)| (String::from_utf8(name).unwrap(), rest.len()))
         };
-        assert_eq!(meant(&["FOSSSimOracle"]), Some(("FOSSSimOracle".to_owned(), 0)));
-        assert_eq!(meant(&["../bin/FOSSSimOracleT2M2", "-h"]), Some(("../bin/FOSSSimOracleT2M2".to_owned(), 1)));
-        assert_eq!(meant(&["x/fosssim-oracle", "original", "-h"]), Some(("x/fosssim-oracle original".to_owned(), 1)));
-        assert_eq!(meant(&["/opt/FOSSSimOracle/fosssim-oracle"]), None);
-        assert_eq!(meant(&["fosssim-oracle", "grade", "original"]), None);
-        assert_eq!(meant(&[""]), None);
-        assert_eq!(meant(&[]), None);
+        assert_eq!(parse_call(&["FOSSSimOracle"]), Some(("FOSSSimOracle".to_owned(), 0)));
+        assert_eq!(parse_call(&["../bin/FOSSSimOracleT2M2", "-h"]), Some(("../bin/FOSSSimOracleT2M2".to_owned(), 1)));
+        assert_eq!(
+            parse_call(&["x/fosssim-oracle", "original", "-h"]),
+            Some(("x/fosssim-oracle original".to_owned(), 1))
+        );
+        assert_eq!(parse_call(&["/opt/FOSSSimOracle/fosssim-oracle"]), None);
+        assert_eq!(parse_call(&["fosssim-oracle", "grade", "original"]), None);
+        assert_eq!(parse_call(&[""]), None);
+        assert_eq!(parse_call(&[]), None);
     }
 }

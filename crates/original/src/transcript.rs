@@ -156,7 +156,7 @@ impl<'a, W: Write> Transcript<'a, W> {
             Task::Record(file) => self.print_message_about("Saving simulation to: ", file, ""),
             Task::Grade(file) => self.print_message_about("Benchmarking simulation in: ", file, ""),
         }
-        if scene.assignment().definition().tells_times {
+        if scene.assignment().definition().prints_times {
             let now = Instant::now();
             self.clock = Some(Clock { start: now, frame: now });
             self.write(b"T: 0\nFrame run time: 0s. Total run time: 0s. \n");

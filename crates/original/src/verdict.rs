@@ -50,7 +50,7 @@ pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Optio
     }
     let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), general(value));
     let mut text: String = outcome.parity.residuals.with_bounds().into_iter().map(line).collect();
-    if assignment.tells_times {
+    if assignment.prints_times {
         text += &format!("{}\n", u8::from(outcome.parity.collisions_passed == Some(true)));
     }
     Some(text)

@@ -186,7 +186,7 @@ impl Backend {
     /// [`Backend::without_sandbox`].
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::walls(&reports).map_err(lacking)?;
+        let walls = layers::walls(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
@@ -195,7 +195,7 @@ impl Backend {
     fn with(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
-                let walls = layers::walls(&reports).map_err(lacking)?;
+                let walls = layers::walls(&reports).map_err(missing_layers)?;
                 Kind::launcher(supervisor.clone(), Walls { landlock_version, ..walls })
             }
             Kind::Fake(script) => Kind::Fake(script.clone()),
@@ -231,7 +231,7 @@ impl Backend {
     /// as root. Also if the supervisor does not start.
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::whatever_holds(&reports).map_err(lacking)?;
+        let walls = layers::available_layers(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
@@ -311,7 +311,7 @@ impl Backend {
         };
         match first {
             Ok(Event::Ready { session, user }) => {
-                let folder = match order.volatile.then(|| handed_over(&asked.control)).transpose() {
+                let folder = match order.volatile.then(|| receive_folder(&asked.control)).transpose() {
                     Ok(folder) => folder.map(OpenFolder::from),
                     Err(_) => return Err(asked.loss_error()),
                 };
@@ -338,12 +338,12 @@ impl Backend {
 }
 
 /// Returns the error for layers that this host lacks.
-const fn lacking(missing: String) -> SandboxError {
+const fn missing_layers(missing: String) -> SandboxError {
     SandboxError::Missing { missing }
 }
 
 /// Receives the working folder in memory.
-fn handed_over(control: &UnixStream) -> io::Result<OwnedFd> {
+fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
     let mut byte = [0];
     let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
     match (byte[0], descriptors.into_iter().next()) {

@@ -264,7 +264,7 @@ pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
 
 /// Returns the layers that hold, whether or not the required set is complete. The error names missing layers if root
 /// would have to run programs as itself.
-pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
+pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
         Some(report) => Err(line(report)),
         None => Ok(active(reports)),
@@ -344,14 +344,14 @@ mod tests {
 
     #[test]
     fn without_landlock_only_root_with_namespaces_may_grade() {
-        let lacking = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
-        assert!(!walls(&reports(&lacking(true))).unwrap().landlock);
-        let bare = Probe { namespaces: Some("not permitted".into()), ..lacking(true) };
+        let missing_layers = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
+        assert!(!walls(&reports(&missing_layers(true))).unwrap().landlock);
+        let bare = Probe { namespaces: Some("not permitted".into()), ..missing_layers(true) };
         let missing = walls(&reports(&bare)).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("this grader included"), "{missing}");
         let bare = without(&without(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
         assert!(walls(&bare).is_err());
-        let missing = walls(&reports(&lacking(false))).unwrap_err();
+        let missing = walls(&reports(&missing_layers(false))).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("5.13"), "{missing}");
     }
 
@@ -363,20 +363,20 @@ mod tests {
 
     #[test]
     fn without_the_required_set_whatever_holds_stays_up() {
-        let lacking = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
-        let walls = whatever_holds(&reports(&lacking)).unwrap();
+        let missing_layers = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
+        let walls = available_layers(&reports(&missing_layers)).unwrap();
         assert!(!walls.landlock && walls.seccomp && walls.notify);
-        assert_eq!(missing(&reports(&lacking)).len(), 1);
-        assert_eq!(whatever_holds(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
+        assert_eq!(missing(&reports(&missing_layers)).len(), 1);
+        assert_eq!(available_layers(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
         let filterless = Probe { seccomp: Some("none".into()), ..healthy(true) };
-        let walls = whatever_holds(&reports(&filterless)).unwrap();
+        let walls = available_layers(&reports(&filterless)).unwrap();
         assert!(walls.own_user && walls.landlock && !walls.seccomp && !walls.notify);
     }
 
     #[test]
     fn root_never_runs_programs_as_itself() {
         let bound = Probe { own_user: Some("not permitted".into()), ..healthy(true) };
-        assert!(whatever_holds(&reports(&bound)).unwrap_err().contains("a user per program"));
+        assert!(available_layers(&reports(&bound)).unwrap_err().contains("a user per program"));
     }
 
     #[test]

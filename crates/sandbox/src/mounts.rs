@@ -58,7 +58,7 @@ pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
 }
 
 /// Stops mounts of this namespace from appearing elsewhere.
-pub(super) fn keep_to_ourselves() -> io::Result<()> {
+pub(super) fn make_mounts_private() -> io::Result<()> {
     Ok(mount_change(c"/", MountPropagationFlags::PRIVATE | MountPropagationFlags::REC)?)
 }
 

@@ -223,7 +223,7 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
 
 /// Kills all processes of this process namespace if this process is its first, and returns whether it is; otherwise
 /// does nothing.
-pub(super) fn kill_everybody_inside() -> bool {
+pub(super) fn kill_namespace() -> bool {
     let is_first = std::process::id() == 1;
     if is_first {
         // SAFETY: integers only. For the first process of a namespace -1 means all other processes in it, and none

@@ -37,9 +37,9 @@ impl Record {
         let has_polynomials = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
         let has_impulses = has_polynomials || matches!(collision, Collision::Simple { .. });
         Self {
-            x: numbers(student, &state.x),
-            v: numbers(student, &state.v),
-            impulses: has_impulses.then(|| impulses(student, &log.impulses)),
+            x: logged_numbers(student, &state.x),
+            v: logged_numbers(student, &state.v),
+            impulses: has_impulses.then(|| logged_impulses(student, &log.impulses)),
             polynomials: has_polynomials.then(|| {
                 (0..log.polynomials.len()).map(|index| logged_polynomial(student, log, index).into()).collect()
             }),
@@ -111,7 +111,7 @@ fn integer(value: usize) -> i32 {
     i32::try_from(value).unwrap_or(i32::MAX)
 }
 
-fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
+fn logged_numbers(student: Student, values: &[f64]) -> Vec<f64> {
     if student.makes(Mistake::LogSinglePrecision) {
         values.iter().map(|&value| single(value)).collect()
     } else {
@@ -119,7 +119,7 @@ fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
     }
 }
 
-fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
+fn logged_impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
     let mut listed: Vec<Contact> = match student.mistake_in(HERE) {
         Some(Mistake::LogNoImpulses) => Vec::new(),
         Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),

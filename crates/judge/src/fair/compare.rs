@@ -148,7 +148,7 @@ fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let mut values = [0.0; MAX_COEFFICIENTS];
     values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
     let similarity = Similarity::measure(values.get(..kept.len())?, actual);
-    let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
+    let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !is_round_off(expected);
     is_right.then(|| similarity.as_match())
 }
 
@@ -196,7 +196,7 @@ fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     }
     let norm = norm(expected);
     // A single NaN or infinity makes the sums NaN or infinite.
-    if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || says_nothing(expected) {
+    if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || is_round_off(expected) {
         return None;
     }
     let scale = fit(expected, actual, 0).filter(|scale| *scale > 0.0)?;
@@ -235,7 +235,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         // Not even round-off remains, because nothing moves. Every formula gives zero.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     }
-    if says_nothing(right) {
+    if is_round_off(right) {
         return check_numbers_where(|_| true, right, logged);
     }
     let matched = |scale: f64| judge(right, logged, missing, scale).map(|share| Match { scale: Some(scale), share });
@@ -291,7 +291,7 @@ fn check_numbers_where(
 }
 
 /// Returns whether a polynomial is zero on the whole step except for round-off.
-pub fn says_nothing(expected: &[BoundedValue]) -> bool {
+pub fn is_round_off(expected: &[BoundedValue]) -> bool {
     sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * norm(expected) || !expected.iter().any(is_significant)
 }
 

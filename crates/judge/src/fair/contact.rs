@@ -191,15 +191,15 @@ impl<'a> Tolerances<'a> {
 
     /// Returns the tolerance of a particle's position.
     pub fn position(&self, particle: usize) -> f64 {
-        self.with(self.position, particle, |known| &known.positions)
+        self.add_sensitivity(self.position, particle, |known| &known.positions)
     }
 
     /// Returns the tolerance of a particle's velocity.
     pub fn velocity(&self, particle: usize) -> f64 {
-        self.with(self.velocity, particle, |known| &known.velocities)
+        self.add_sensitivity(self.velocity, particle, |known| &known.velocities)
     }
 
-    fn with(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
+    fn add_sensitivity(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
         let known = self.sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
         floor + FAIR_SENSITIVITY * known
     }

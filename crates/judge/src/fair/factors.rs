@@ -37,7 +37,7 @@ impl Factors {
     }
 
     /// Adds `count` factors of 1.
-    pub(super) fn take_ones(&mut self, count: u64) {
+    pub(super) fn add_ones(&mut self, count: u64) {
         if count > 0 {
             (self.least, self.greatest) = (self.least.min(1.0), self.greatest.max(1.0));
             self.count += count;

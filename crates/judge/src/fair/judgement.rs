@@ -105,7 +105,7 @@ impl Judging {
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
         let mut told = self.scales[kind][number];
-        told.take_ones(self.same[kind][number]);
+        told.add_ones(self.same[kind][number]);
         let usual = told.usual().or_else(|| self.claimed[kind][number].usual());
         pending.finding(usual.unwrap_or([1.0; 2]))
     }
@@ -152,7 +152,7 @@ impl Judging {
     }
 
     /// Stops judging; later steps are not judged.
-    pub(crate) fn give_up(&mut self, step: u32) {
+    pub(crate) fn stop_judging(&mut self, step: u32) {
         self.said.given_up = Some(step);
     }
 

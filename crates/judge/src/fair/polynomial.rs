@@ -66,9 +66,9 @@ impl StepJudgement {
     ) -> PolynomialJudgement {
         let LoggedPolynomial { place, number, list } = *logged;
         let own = expected.polynomial(number);
-        let pend = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
+        let add_pending = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
-                judged.pend(logged, (form, false), expected, factors.unwrap_or(NONE));
+                judged.add_pending(logged, (form, false), expected, factors.unwrap_or(NONE));
             }
             PolynomialJudgement::Hangs
         };
@@ -77,7 +77,7 @@ impl StepJudgement {
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
                 Ok(found) => self.take(logged, own, found, is_known),
-                Err((_, factors @ Some(_))) => pend(self, Form::Either, own, factors),
+                Err((_, factors @ Some(_))) => add_pending(self, Form::Either, own, factors),
                 Err((mismatch, None)) => PolynomialJudgement::Wrong(mismatch),
             };
         };
@@ -88,7 +88,7 @@ impl StepJudgement {
                 if other.is_err() && found.scale.is_some() && possible_factors(right, list).is_none() {
                     self.course_form = self.course_form.or(Some(place));
                 } else if other.is_err() {
-                    pend(self, Form::Right, right, possible_factors(right, list));
+                    add_pending(self, Form::Right, right, possible_factors(right, list));
                 }
                 self.take(logged, own, found, is_known)
             }
@@ -98,13 +98,13 @@ impl StepJudgement {
                     self.take(logged, right, found, is_known);
                     PolynomialJudgement::RightForm
                 }
-                factors => pend(self, Form::Course, own, factors),
+                factors => add_pending(self, Form::Course, own, factors),
             },
             (Err(_), Err(mismatch)) => match [own, right].map(|form| possible_factors(form, list)) {
                 [None, None] => PolynomialJudgement::Wrong(mismatch),
                 [course, definition] => {
-                    pend(self, Form::Course, own, course);
-                    pend(self, Form::Right, right, definition)
+                    add_pending(self, Form::Course, own, course);
+                    add_pending(self, Form::Right, right, definition)
                 }
             },
         }
@@ -125,7 +125,7 @@ impl StepJudgement {
             Some(factors) => {
                 self.shares.coefficient = self.shares.coefficient.max(found.share);
                 if is_known {
-                    self.pend(logged, (Form::Either, true), expected, factors);
+                    self.add_pending(logged, (Form::Either, true), expected, factors);
                 }
             }
         }
@@ -156,7 +156,7 @@ impl StepJudgement {
     }
 
     /// Adds a polynomial that is right only with the factors `bounds`.
-    fn pend(
+    fn add_pending(
         &mut self,
         logged: &LoggedPolynomial<'_>,
         (form, is_claim): (Form, bool),
@@ -234,7 +234,7 @@ mod tests {
         for factors in bounds {
             let expected = [1e-14, 1.0, 2.0].map(BoundedValue::exact);
             let logged = LoggedPolynomial { place, number: 0, list: &[1.0, 2.0] };
-            judged.pend(&logged, (Form::Either, false), &expected, *factors);
+            judged.add_pending(&logged, (Form::Either, false), &expected, *factors);
         }
         judged.pending.iter().all(|pending| pending.finding([factor, factor]).is_none())
     }

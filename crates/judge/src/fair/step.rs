@@ -70,12 +70,12 @@ fn follow(
         // The submission may have the decisions that the root finder makes of right polynomials.
         (first, decisions, ..) = attempt(simulation, None, &[])?;
     }
-    if !first.hangs_on_round_off() {
+    if !first.may_be_round_off() {
         return Ok(first);
     }
     let sensitivity = probe(context, simulation, &records, &decisions);
     let (second, _, borderline, _) = attempt(simulation, Some(&sensitivity), &[])?;
-    if second.total() == 0 || !second.hangs_on_decisions() {
+    if second.total() == 0 || !second.may_follow_decisions() {
         return Ok(second);
     }
     let borderline = &borderline[..borderline.len().min(MAX_FLIPS)];

@@ -93,7 +93,7 @@ impl StepJudgement {
 
     /// Returns whether the step has findings that its sensitivity could excuse. Findings about polynomials at known
     /// positions depend only on the polynomials' own bounds.
-    pub(super) fn hangs_on_round_off(&self) -> bool {
+    pub(super) fn may_be_round_off(&self) -> bool {
         self.hangs
             || self.findings.iter().any(|finding| {
                 !matches!(
@@ -110,7 +110,7 @@ impl StepJudgement {
     }
 
     /// Returns whether the step has findings that another decision, which moves pairs elsewhere, could explain.
-    pub(super) fn hangs_on_decisions(&self) -> bool {
+    pub(super) fn may_follow_decisions(&self) -> bool {
         self.hangs
             || self.findings.iter().any(|finding| {
                 matches!(

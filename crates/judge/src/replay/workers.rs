@@ -56,7 +56,7 @@ impl<'a> Workers<'a> {
         let worker = || {
             let mut simulation = Simulation::new(self.scene, self.root_search);
             if self.one_by_one {
-                simulation.forgo_lanes();
+                simulation.disable_lanes();
             }
             Worker { simulation, buffers: Buffers::new(self.scene), searches: SearchCounts::default() }
         };
@@ -167,14 +167,14 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
 
 /// Judges a step that has a result by the fair rules.
 fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, .. } = slot;
+    let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_deferred, .. } = slot;
     if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.beyond_limit) {
         let frame = shape.layout.end_record(*step);
         let mid = shape.layout.polynomials.then_some(&*mid);
         let records = Records { step: *step, frame, before, mid, end };
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
-        *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
-        if !*is_put_off {
+        *is_deferred = *is_extraordinary && !records.start_ordinarily(context);
+        if !*is_deferred {
             *judged = fair::judge(context, &mut worker.simulation, records, result.identical);
         }
     }

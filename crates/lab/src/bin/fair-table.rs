@@ -34,7 +34,7 @@ fn main() -> anyhow::Result<()> {
                 row.submission,
                 row.kind,
                 row.scene,
-                reason(fair)
+                describe_reason(fair)
             );
         }
         *summary.entry((row.kind.as_str(), parity, verdict)).or_default() += 1;
@@ -52,7 +52,7 @@ fn judge(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judg
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 
-fn reason(fair: &Judgement) -> String {
+fn describe_reason(fair: &Judgement) -> String {
     let mut parts = Vec::new();
     if let Some(refusal) = fair.refusal {
         parts.push(format!("{refusal:?}"));

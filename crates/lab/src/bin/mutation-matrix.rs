@@ -78,7 +78,7 @@ fn main() -> anyhow::Result<ExitCode> {
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
     let uncaught = mistakes(&rows, &matrix, FAIR, false).len();
-    let accuses = !find_accused(FAIR, &rows, &cases, &matrix).is_empty();
+    let accuses = !find_rejected(FAIR, &rows, &cases, &matrix).is_empty();
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
 }
 
@@ -92,7 +92,7 @@ fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool
 }
 
 /// Returns the correct variants that a rule book rejects, each with the scene.
-fn find_accused<'a>(
+fn find_rejected<'a>(
     book: usize,
     rows: &[&'a Row],
     cases: &'a [WatchedScene],
@@ -145,7 +145,7 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], ma
     println!("  {} mistakes caught\n", mistakes(rows, matrix, book, true).len());
     print_list("mistakes that no scene catches", &mistakes(rows, matrix, book, false));
     let mut scenes: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for (row, scene) in find_accused(book, rows, cases, matrix) {
+    for (row, scene) in find_rejected(book, rows, cases, matrix) {
         scenes.entry(row.id).or_default().push(scene);
     }
     let accused: Vec<String> = scenes.iter().map(|(id, scenes)| format!("{id}: {}", scenes.join(", "))).collect();

@@ -124,7 +124,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             evidence.complete += usize::from(trace.allows_wholly(word));
             if trace.allows(word) {
                 evidence.traces += 1;
-            } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| speaks_against(&one.one, told))) {
+            } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.one, told))) {
                 evidence.against += 1;
             }
         }
@@ -134,7 +134,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
 
 /// Returns whether a trace's explanation contradicts the reported one: it is about the same polynomials, but does not
 /// allow the report.
-fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
+fn contradicts(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.about {
         About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
         About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
@@ -177,7 +177,7 @@ fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     // A contradicting trace is not reproduced at all.
     let against = open.iter().filter(|trace| !trace.allows(&said)).flat_map(|trace| &trace.symptoms);
     told.samples +=
-        against.filter(|symptom| speaks_against(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
+        against.filter(|symptom| contradicts(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
     let About::Polynomials { subjects, found } = &mut told.about else { return told };
     let agreeing: Vec<&Symptom> =
         open.iter().flat_map(|trace| &trace.symptoms).filter(|one| one.allowed.contains_key(&said)).collect();

@@ -49,10 +49,10 @@ pub fn explain_together<'a>(
         let said = next.statement();
         let is_empty = find(&next.key).is_some_and(is_empty_stage);
         let is_told = if is_empty {
-            is_seen_again(&open, &said)
+            is_confirmed(&open, &said)
         } else {
             (found.is_empty() && empty.is_empty())
-                || (next.is_settled() && is_supported(&open, &next) && !is_said_already(&found, &next, &open))
+                || (next.is_settled() && is_supported(&open, &next) && !is_repetition(&found, &next, &open))
         };
         if is_told {
             leave_open(&mut open, &said);
@@ -187,7 +187,7 @@ fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
 /// Returns whether a further mistake repeats a reported one under another name. A program has one formula for each
 /// polynomial and contact vector, and the symptoms of a stage may follow from a mistake reported for it or for an
 /// earlier stage.
-fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
+fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
     let is_said = |one: &Explanation| {
@@ -275,7 +275,7 @@ const fn stage_of(area: Area) -> Option<StepStage> {
 }
 
 /// Returns whether enough traces look as if the stage were empty.
-fn is_seen_again(open: &[OpenTrace], said: &str) -> bool {
+fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
     open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
 }
 

@@ -110,7 +110,7 @@ pub struct Definition {
     /// The original's name for its verdict on collisions (oracle-behavior.md 6).
     pub verdict: &'static str,
     /// Whether the original prints the time of each step, and writes into `residual.txt` whether collisions passed.
-    pub tells_times: bool,
+    pub prints_times: bool,
     /// The part of a scene that the starter library supports.
     pub library: Library,
     /// The parts written by the student. Only these can hold a student's mistake.
@@ -126,7 +126,7 @@ const COMMON: Definition = Definition {
     dropping: Dropping::Leading,
     version: "Fall 2010 v.A",
     verdict: "Collisions Passed",
-    tells_times: false,
+    prints_times: false,
     library: LIBRARY,
     student: &[],
 };

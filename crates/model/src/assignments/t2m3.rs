@@ -6,7 +6,7 @@ pub(super) const DEFINITION: Definition = Definition {
     key: "t2m3",
     title: "Theme 2, Milestone 3",
     verdict: "Hybrid Collisions Passed",
-    tells_times: true,
+    prints_times: true,
     library: Library {
         integrators: &[
             Integrator::ExplicitEuler,

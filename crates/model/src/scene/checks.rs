@@ -146,7 +146,7 @@ fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
                 let help = "an edge without length has no direction; a spring on it is not a number";
                 about(
                     part.tag,
-                    format!("edge {number} joins particles {first} and {second}, which start at the same position"),
+                    format!("edge {number} joins particles {first} and {second}, which start at one position"),
                     help,
                 )
             });
@@ -162,8 +162,7 @@ fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
         if in_one_place(parts, first, second) {
             let name = part.tag.rule.name;
             report.error(|| {
-                let message =
-                    format!("`{name}` between particles {first} and {second}, which start at the same position");
+                let message = format!("`{name}` between particles {first} and {second}, which start at one position");
                 about(part.tag, message, "at distance zero it is not a number")
             });
         }

@@ -298,9 +298,7 @@ impl<'t> DocumentReader<'t, '_> {
 
 fn syntax_words(error: SyntaxError) -> (String, Option<String>) {
     let (message, help) = match error {
-        SyntaxError::InvalidBangMarkup => {
-            ("`<!` does not start a comment or another known construct", "`<!-- ... -->`")
-        }
+        SyntaxError::InvalidBangMarkup => ("`<!` does not start a known construct", "`<!-- ... -->`"),
         SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl => ("`<?` without `?>`", "end it with `?>`"),
         SyntaxError::UnclosedComment => ("a comment without end", "end it with `-->`"),
         SyntaxError::UnclosedDoctype => ("a document type without its end", "end it with `>`"),

@@ -62,7 +62,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Reports a warning about an attribute's value, which is shown as written.
-    pub(super) fn warn_of_odd(&mut self, name: &str, help: impl Into<String>) {
+    pub(super) fn warn_bad(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
         self.complain(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
     }

@@ -32,7 +32,7 @@ pub enum UnknownPart {
 impl UnknownFeature {
     /// Returns whether a program rejects the scene and writes no trace.
     #[must_use]
-    pub const fn is_refused(&self) -> bool {
+    pub const fn is_rejected(&self) -> bool {
         match self.part {
             UnknownPart::Integrator(_) => true,
             UnknownPart::Collision(_) => self.assignment.definition().library.refuses_collisions,
@@ -44,7 +44,7 @@ impl UnknownFeature {
 impl fmt::Display for UnknownFeature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let programs = format!("programs of {}", self.assignment.key().to_uppercase());
-        let verb = if self.is_refused() { "reject" } else { "ignore" };
+        let verb = if self.is_rejected() { "reject" } else { "ignore" };
         match self.part {
             UnknownPart::Integrator(integrator) => write!(formatter, "{programs} {verb} {}", integrator.name()),
             UnknownPart::Force(kind) => write!(formatter, "{programs} {verb} <{}>", kind.element()),

@@ -326,12 +326,12 @@ fn things_in_one_place() {
     assert!(!three("<collision type='penalty'/>", plane).contains("halfplane"));
     says(
         "<particle px='0' py='0' vx='0' vy='0' m='1' fixed='1'/><edge i='0' j='2'/>",
-        "4:56: edge 0 joins particles 0 and 2, which start at the same position (an edge without length has no direction; a \
+        "4:56: edge 0 joins particles 0 and 2, which start at one position (an edge without length has no direction; a \
          spring on it is not a number)",
     );
     says(
         "<particle px='0' py='0' vx='0' vy='0' m='1' fixed='1'/><gravitationalforce i='0' j='2' G='1'/>",
-        "4:56: `gravitationalforce` between particles 0 and 2, which start at the same position (at distance zero it is not a \
+        "4:56: `gravitationalforce` between particles 0 and 2, which start at one position (at distance zero it is not a \
          number)",
     );
 }

@@ -267,7 +267,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
-        fields.warn_of_odd("COR", "a coefficient of restitution must be between 0 and 1");
+        fields.warn_bad("COR", "a coefficient of restitution must be between 0 and 1");
     }
     let kind = fields.choice("type", &types)?;
     let used: &[&str] = match kind {
@@ -317,7 +317,7 @@ fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     #[expect(clippy::cast_possible_truncation, reason = "whole and in range")]
     let iterations = written as i32;
     if iterations < 0 {
-        fields.warn_of_odd("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
+        fields.warn_bad("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
     }
     Some(iterations)
 }
@@ -413,6 +413,6 @@ fn read_path(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Par
 /// Warns about a negative number that the original accepts.
 fn warn_of_negative(fields: &mut TagFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
     if value < 0.0 {
-        fields.warn_of_odd(name, effect);
+        fields.warn_bad(name, effect);
     }
 }

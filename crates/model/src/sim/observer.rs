@@ -105,7 +105,7 @@ impl Observer for () {
 }
 
 /// Forwards every event to the given observers, one after the other.
-macro_rules! go_on {
+macro_rules! forward_all {
     ($self:ident => $($to:expr),+) => {
         fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
         fn begin_pass(&mut $self, pass: Pass) { $($to.begin_pass(pass);)+ }
@@ -123,7 +123,7 @@ macro_rules! go_on {
 
 /// A borrowed observer receives the same events.
 impl<O: Observer + ?Sized> Observer for &mut O {
-    go_on!(self => (**self));
+    forward_all!(self => (**self));
     #[inline]
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         (**self).wanted_pairs()
@@ -136,7 +136,7 @@ impl<O: Observer + ?Sized> Observer for &mut O {
 
 /// Two observers receive the same events, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    go_on!(self => self.0, self.1);
+    forward_all!(self => self.0, self.1);
     /// Returns the needs of one observer, if the other needs nothing.
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         if matches!(self.1.wanted_pairs(), WantedPairs::Nothing) {

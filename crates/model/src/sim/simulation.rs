@@ -107,8 +107,8 @@ impl Simulation {
     }
 
     /// Computes later pairs one by one, even for observers that only need bytes. The results are the same.
-    pub fn forgo_lanes(&mut self) {
-        self.handler.forgo_lanes();
+    pub fn disable_lanes(&mut self) {
+        self.handler.disable_lanes();
     }
 
     /// Sets the maximum [`Simulation::work`]. The detection pass or iteration that exceeds it ends its step with

@@ -126,7 +126,7 @@ pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut P
 }
 
 /// Skips ordinary polynomials, and returns the same as [`polynomials`]; nothing is dropped.
-pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
+pub(crate) fn skip_ordinary(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     let (mut at, mut done) = (0, 0);
     while done < most
         && let Some((size, _)) = ordinary(&bytes[at..])

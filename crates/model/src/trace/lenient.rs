@@ -353,7 +353,7 @@ impl<R: Read> Lenient<R> {
         while done < entries && !self.failed {
             let (window, most) = (self.source.window(), entries - done);
             let (used, ordinary, trimmed) = if self.is_full(frame) {
-                decode::pass_over(window, most)
+                decode::skip_ordinary(window, most)
             } else if self.strict {
                 decode::polynomials::<false>(window, most, &mut frame.polynomials)
             } else {

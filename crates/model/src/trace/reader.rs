@@ -47,17 +47,17 @@ impl<'a> Reader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
     #[must_use]
     pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
-        Self::over(Lenient::from_slice(trace, layout), layout)
+        Self::from_records(Lenient::from_slice(trace, layout), layout)
     }
 }
 
 impl<R: Read> Reader<R> {
     /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
-        Self::over(Lenient::new(stream, layout), layout)
+        Self::from_records(Lenient::new(stream, layout), layout)
     }
 
-    fn over(records: Lenient<R>, layout: Layout) -> Self {
+    fn from_records(records: Lenient<R>, layout: Layout) -> Self {
         Self {
             records: records.strict(),
             read: LenientFrame::default(),

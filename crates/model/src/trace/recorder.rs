@@ -47,7 +47,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// The first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
-        self.writer.hand_on(self.log.polynomials.all());
+        self.writer.write_collected(self.log.polynomials.all());
         self.writer.finish()
     }
 }
@@ -56,7 +56,7 @@ impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
         // Between steps, because the records of one step borrow the same list.
         if self.writer.is_full() {
-            self.writer.hand_on(self.log.polynomials.all());
+            self.writer.write_collected(self.log.polynomials.all());
         }
         if self.writer.has_unwritten() {
             self.log.begin_step_behind();

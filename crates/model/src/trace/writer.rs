@@ -72,7 +72,7 @@ impl<W: Write> Writer<W> {
         }
         self.written.records += 1;
         if self.is_full() {
-            self.hand_on(&[]);
+            self.write_collected(&[]);
         }
     }
 
@@ -122,7 +122,7 @@ impl<W: Write> Writer<W> {
     /// # Errors
     /// The first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
-        self.hand_on(&[]);
+        self.write_collected(&[]);
         if let Some(error) = self.error {
             return Err(error);
         }
@@ -131,7 +131,7 @@ impl<W: Write> Writer<W> {
     }
 
     /// Writes the collected records; `polynomials` are those of the log.
-    pub(super) fn hand_on(&mut self, polynomials: &[u8]) {
+    pub(super) fn write_collected(&mut self, polynomials: &[u8]) {
         let bytes = (self.buffer.len() + self.listed) as u64;
         if self.error.is_none() && bytes > 0 {
             let mut parts = [IoSlice::new(&[]); 2 * LISTS + 1];

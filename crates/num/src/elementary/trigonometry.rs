@@ -75,7 +75,7 @@ fn at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u32) -
 }
 
 /// Returns the nearest angle of the table, whose index is in the sum's lowest bits, and the difference from it.
-fn looked_up(modulus: f64) -> ([f64; 4], f64) {
+fn nearest_angle(modulus: f64) -> ([f64; 4], f64) {
     let sum = ROUNDS + modulus;
     let row = 4 * (sum.to_bits() as u32) as usize;
     (std::array::from_fn(|i| f64::from_bits(ANGLES[row + i])), modulus - (sum - ROUNDS))
@@ -88,27 +88,27 @@ fn sine(x: f64, dx: f64) -> f64 {
         let series = TAYLOR.iter().rev().copied().reduce(|sum, next| fused(sum, square, next)).unwrap_or(0.0);
         return x + fused(square, fused(series, x, -(0.5 * dx)), dx);
     }
-    let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
+    let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let dx = if x <= 0.0 { -dx } else { dx };
     let square = difference * difference;
     let s = difference + fused(difference * square, fused(SINE[1], square, SINE[0]), dx);
-    let c = fused(difference, dx, square * one_less_cosine(square));
+    let c = fused(difference, dx, square * cosine_complement(square));
     let rest = fused(-c, sine, fused(s, cosine_rest, sine_rest));
     (sine + fused(s, cosine, rest)).copysign(x)
 }
 
 /// Returns the cosine of `x + dx`, for the same arguments as [`sine`].
 fn cosine(x: f64, dx: f64) -> f64 {
-    let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
+    let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let difference = difference + if x < 0.0 { -dx } else { dx };
     let square = difference * difference;
     let s = fused(difference * square, fused(SINE[1], square, SINE[0]), difference);
-    let c = square * one_less_cosine(square);
+    let c = square * cosine_complement(square);
     let rest = fused(-c, cosine, fused(-s, sine_rest, cosine_rest));
     cosine + fused(-s, sine, rest)
 }
 
 /// Returns `(1 - cos x) / x²` for a small `x` with this square.
-fn one_less_cosine(square: f64) -> f64 {
+fn cosine_complement(square: f64) -> f64 {
     fused(square, fused(COSINE[2], square, COSINE[1]), COSINE[0])
 }

@@ -113,7 +113,7 @@ impl Sheet {
     }
 
     /// Returns the attributes of a stroked path.
-    fn along(&self, ink: Ink) -> String {
+    fn stroke_attributes(&self, ink: Ink) -> String {
         let (class, color) = ink.class_and_color('s');
         format!(
             " class=\"{class}\"{}{}",
@@ -135,7 +135,7 @@ impl Sheet {
 
     /// Draws thin straight lines without dashes.
     pub fn rules(&mut self, ink: Ink, lines: &[([f64; 2], [f64; 2])]) {
-        let ink = self.along(ink);
+        let ink = self.stroke_attributes(ink);
         let piece = |&([x1, y1], [x2, y2]): &([f64; 2], [f64; 2])| {
             let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(pixel);
             format!("M{x1} {y1}L{x2} {y2}")
@@ -164,7 +164,7 @@ impl Sheet {
         let _ = writeln!(
             self.svg,
             "<path{}{}{}{} d=\"M{list}\"/>",
-            self.along(ink),
+            self.stroke_attributes(ink),
             // The lines of the style sheet have this width.
             if self.is_styled && width == 2.0 { String::new() } else { format!(" stroke-width=\"{}\"", pixel(width)) },
             self.attribute_unless_styled("stroke-linejoin", "round"),
@@ -194,7 +194,7 @@ impl Sheet {
                 _ => format!("M{} {}l4 4l-4 4l-4 -4z", pixel(x), pixel(y - 4.0)),
             },
             Ink::Axis | Ink::Grid | Ink::Bad => {
-                let ink = self.along(ink);
+                let ink = self.stroke_attributes(ink);
                 let (x, y) = (pixel(x - 3.5), pixel(y - 3.5));
                 let _ = writeln!(self.svg, "<path{ink} stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>");
                 return;

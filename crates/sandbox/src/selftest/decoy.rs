@@ -88,7 +88,7 @@ impl Decoy {
     }
 
     /// Returns whether the text contains the secret.
-    pub(super) fn is_betrayed(&self, text: &[u8]) -> bool {
+    pub(super) fn contains_secret(&self, text: &[u8]) -> bool {
         text.windows(self.secret.len()).any(|window| window == self.secret.as_bytes())
     }
 
@@ -162,7 +162,7 @@ mod tests {
         std::fs::write(folder.path().join("run/neighbor/planted"), "x").unwrap();
         assert!(before.difference(&decoy.state().unwrap()).is_some());
         let secret = std::fs::read(&reference).unwrap();
-        assert!(decoy.is_betrayed(&[b"it is ", &secret[..]].concat()) && !decoy.is_betrayed(b"it is"));
+        assert!(decoy.contains_secret(&[b"it is ", &secret[..]].concat()) && !decoy.contains_secret(b"it is"));
         assert!(decoy.is_alive());
         decoy.victim.kill().unwrap();
         decoy.victim.wait().unwrap();

@@ -204,7 +204,7 @@ impl Place<'_> {
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
             }
-            if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
+            if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
                 return Err(broken("it printed a secret in a first run".into()));
             }
             running = self.backend.start(&job).map_err(|e| fault(&e))?;
@@ -219,7 +219,7 @@ impl Place<'_> {
         if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
         }
-        if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
+        if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
             return Err(broken("it printed a secret".into()));
         }
         if !decoy.is_alive() {
@@ -257,10 +257,7 @@ impl Place<'_> {
         let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
-            return Err(format!(
-                "it does not compile on this host: {}",
-                text.lines().take(3).collect::<Vec<_>>().join(" ")
-            ));
+            return Err(format!("it does not compile here: {}", text.lines().take(3).collect::<Vec<_>>().join(" ")));
         }
         std::fs::rename(&fresh, &program).map_err(said)?;
         Ok(program)

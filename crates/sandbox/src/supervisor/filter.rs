@@ -152,7 +152,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let own_files = purpose.tools && purpose.own_user;
     // The supervisor decides about these calls for a build tool.
     let asked = purpose.tools && purpose.announce;
-    for (group, is_refused) in [
+    for (group, is_rejected) in [
         (calls::REFUSED, true),
         (calls::LINKING, !purpose.tools),
         (calls::IDENTITY, !purpose.tools),
@@ -160,7 +160,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         (calls::MODES, !own_files && !asked),
         (calls::LOCKS, !asked),
     ] {
-        for (_, call) in group.iter().filter(|_| is_refused) {
+        for (_, call) in group.iter().filter(|_| is_rejected) {
             let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
             refuse(if network { libc::EACCES } else { libc::EPERM }, *call, Vec::new());
         }

@@ -147,7 +147,7 @@ impl Keeper {
                 let _ = std::fs::remove_dir(folder);
                 code
             }
-            Err(error) => run::tell(Err(Failure::new("make namespaces", &error)), &mut request.answers).max(1),
+            Err(error) => run::report_end(Err(Failure::new("make namespaces", &error)), &mut request.answers).max(1),
         }
     }
 
@@ -160,6 +160,6 @@ impl Keeper {
             .and_then(|()| view::complete(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))
             .and_then(|run| run.finish(&mut answers));
-        run::tell(finished, &mut answers)
+        run::report_end(finished, &mut answers)
     }
 }

@@ -131,7 +131,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
     loop {
         if alone {
             // One command ends all processes in any state. If no child is left, there are no other processes.
-            if sys::kill_everybody_inside() && reap_all(&mut reaped) {
+            if sys::kill_namespace() && reap_all(&mut reaped) {
                 return LeftProcesses::default();
             }
         }

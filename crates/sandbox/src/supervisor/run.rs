@@ -47,15 +47,15 @@ pub(super) fn main() -> ExitCode {
         .map_err(stage("read the order"))
         .and_then(|order| settle(order, control));
     ExitCode::from(match settled {
-        Ok(SettledRun::Here(run)) => tell(run.finish(&mut answers), &mut answers),
+        Ok(SettledRun::Here(run)) => report_end(run.finish(&mut answers), &mut answers),
         // The process inside has reported everything.
         Ok(SettledRun::Elsewhere(code)) => code,
-        Err(failure) => tell(Err(failure), &mut answers),
+        Err(failure) => report_end(Err(failure), &mut answers),
     })
 }
 
 /// Reports how the run ended. Returns the supervisor's exit code: 0 if the grader has received the report.
-pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
+pub(super) fn report_end(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
     let sent = match finished {
         Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
             .and_then(|()| answers.write_all(&stdout))
@@ -133,7 +133,7 @@ impl Run {
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
         let slot = slot.map_err(stage("change the owner of the working folder"))?;
         if order.volatile {
-            hand_over(&control, folder.as_fd()).map_err(stage("send the working folder to the grader"))?;
+            send_folder(&control, folder.as_fd()).map_err(stage("send the working folder to the grader"))?;
         }
         let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
@@ -211,9 +211,9 @@ impl Run {
                 main_status = Some(process.status);
             }
         });
-        self.stdout.take_rest();
-        self.stderr.take_rest();
-        self.hear();
+        self.stdout.read_rest();
+        self.stderr.read_rest();
+        self.read_messages();
         let mut after = contents(&self.order, self.folder.as_fd());
         // Most programs create no folders.
         let shallow = match after.over || after.folders > 0 {
@@ -226,8 +226,7 @@ impl Run {
         };
         // Only root reads files that a submission leaves in memory.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
-            folder::give(self.folder.as_fd(), *owner, *group)
-                .map_err(stage("restore the owner of the working folder"))?;
+            folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("restore the folder's owner"))?;
         }
         // Cleaning up counts for the run.
         let wall = self.began.elapsed();
@@ -245,12 +244,12 @@ impl Run {
             None => None,
         };
         // A process that the kernel blocks is the host's problem; the program has caused any other that did not end.
-        self.blame_if(
+        self.record_cause(
             left.count > 0 && !left.held,
             RunEnd::Violation { call: "none, but it left processes that did not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
-        self.blame_if(out_of_memory, RunEnd::MemoryLimit);
+        self.record_cause(out_of_memory, RunEnd::MemoryLimit);
         let (cpu, largest) = sys::children_usage().map_err(stage("ask for the usage"))?;
         let report = Report {
             cause: self.cause.take(),
@@ -290,7 +289,7 @@ impl Run {
             )?;
             let ready = found.map(|one| one != Readiness::Idle);
             if ready[0] {
-                self.obey();
+                self.run_commands();
             }
             if ready[1] {
                 self.stdout.take();
@@ -299,7 +298,7 @@ impl Run {
                 self.stderr.take();
             }
             if ready[3] {
-                self.hear();
+                self.read_messages();
             }
             match found[4] {
                 Readiness::Idle => {}
@@ -318,7 +317,7 @@ impl Run {
                 next_look = Instant::now() + TICK;
             }
             if now >= next_folder {
-                self.look_at_folder();
+                self.check_folder();
                 next_folder = Instant::now() + TICK.max(now.elapsed() * FOLDER_SHARE);
             }
         }
@@ -331,23 +330,23 @@ impl Run {
     }
 
     /// Records the cause if it is the first.
-    fn blame_if(&mut self, condition: bool, cause: RunEnd) {
+    fn record_cause(&mut self, condition: bool, cause: RunEnd) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
     }
 
     /// Executes commands of the grader. The end of its pipe means that the grader has ended.
-    fn obey(&mut self) {
+    fn run_commands(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) => self.blame_if(true, RunEnd::Cancelled),
+            Ok(1) => self.record_cause(true, RunEnd::Cancelled),
             _ => self.orphaned = true,
         }
     }
 
     /// Reads the child's messages. The end of the socket means that the program has started.
-    fn hear(&mut self) {
+    fn read_messages(&mut self) {
         let mut buffer = [0; 4096];
         while let Some(status) = &self.status {
             let Ok((length, mut descriptors)) = sys::receive_descriptors(status, &mut buffer) else { return };
@@ -374,7 +373,7 @@ impl Run {
             }
         };
         // The socket closes when the program starts, before its first instruction.
-        self.hear();
+        self.read_messages();
         let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
         let (user, root) = (self.user(), wire::path(&self.order.folder));
         let unless = |allowed| if allowed { CallAnswer::GoOn } else { CallAnswer::Refused(libc::EPERM) };
@@ -412,7 +411,7 @@ impl Run {
         } else if executes {
             call.push_str(" (it started another program)");
         }
-        self.blame_if(true, RunEnd::Violation { call });
+        self.record_cause(true, RunEnd::Violation { call });
         Ok(())
     }
 
@@ -435,12 +434,12 @@ impl Run {
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
         // A fork bomb exceeds both limits.
-        self.blame_if(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
-        self.blame_if(memory > self.order.limits.memory, RunEnd::MemoryLimit);
+        self.record_cause(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
+        self.record_cause(memory > self.order.limits.memory, RunEnd::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.blame_if(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
-        self.blame_if(self.is_trace_over(), RunEnd::TraceLimit);
-        self.blame_if(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
+        self.record_cause(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
+        self.record_cause(self.is_trace_over(), RunEnd::TraceLimit);
+        self.record_cause(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
     /// Returns whether the file with the trace's name is longer than a trace may be.
@@ -457,14 +456,14 @@ impl Run {
     }
 
     /// Checks the working folder, removed files that are still in use, and memory that is resident for no process.
-    fn look_at_folder(&mut self) {
+    fn check_folder(&mut self) {
         let mut contents =
             folder::measure(self.folder.as_fd(), self.order.folder_bytes(), self.order.limits.folder_files);
         if self.order.volatile {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
         let over = self.over(&contents);
-        self.blame_if(over, RunEnd::FolderLimit);
+        self.record_cause(over, RunEnd::FolderLimit);
         if self.order.volatile && !self.can_hide_memory() {
             return;
         }
@@ -478,7 +477,7 @@ impl Run {
         }
         self.unseen_memory = held.memory;
         let over = self.over(&contents);
-        self.blame_if(over, RunEnd::FolderLimit);
+        self.record_cause(over, RunEnd::FolderLimit);
     }
 
     /// Returns whether there may be memory that is resident for no process: files outside the folder that no rules
@@ -522,7 +521,7 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
 }
 
 /// Sends the folder to the grader.
-fn hand_over(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
+fn send_folder(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
     sys::send_descriptors(&socket, wire::FOLDER, [folder])
 }

@@ -63,7 +63,7 @@ impl CapturedStream {
     }
 
     /// Reads the rest of the stream. Must be called only when no process is alive that could continue to write.
-    pub(super) fn take_rest(&mut self) {
+    pub(super) fn read_rest(&mut self) {
         while self.pipe.is_some() && self.take() {}
     }
 }
@@ -82,7 +82,7 @@ mod tests {
             capture.take();
             writer.write_all(b"abcdef").unwrap();
             drop(writer);
-            capture.take_rest();
+            capture.read_rest();
             assert_eq!(capture.bytes, b"abcdef"[..limit as usize]);
             assert_eq!(capture.truncated, truncated);
             assert!(capture.descriptor().is_none());

@@ -25,15 +25,15 @@ use crate::{
 
 /// The folder in which the new root is built, which every Linux has. It becomes visible again after the roots have
 /// changed.
-const SITE: &str = "/proc";
+const BUILD_ROOT: &str = "/proc";
 /// The old root's temporary name below the new root.
 const HOST: &str = "/.host";
 /// The place at which an ordinary user's prepared root shows processes, so that its copies may show them.
-const WITNESS: &str = "/.processes";
+const PROC_PLACEHOLDER: &str = "/.processes";
 /// The maximum number of links on a path, the same as the kernel's.
 const MAX_LINKS: u32 = 40;
 /// Mount options with room for the folders, links and empty files under mounts.
-const ROOM: &str = "mode=755,size=4m,nr_inodes=20k";
+const ROOT_OPTIONS: &str = "mode=755,size=4m,nr_inodes=20k";
 
 /// The access to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     if order.volatile {
         let laid = view.resolve(&folder).and_then(|real| {
             let real = real.ok_or(io::ErrorKind::NotFound)?;
-            lay_out(&real, &on_host(&real), order)
+            mount_copy(&real, &on_host(&real), order)
         });
         laid.map_err(stage("put the working folder into memory"))?;
     }
@@ -74,8 +74,8 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     hide_own(order, Path::new("/"))?;
     if sys::user() != 0 {
         // The kernel lets an ordinary user show processes only if others are visible.
-        std::fs::create_dir(WITNESS).map_err(stage("make /proc"))?;
-        mounts::mount(c"proc", &text(Path::new(WITNESS))?, c"", false).map_err(stage("mount /proc"))?;
+        std::fs::create_dir(PROC_PLACEHOLDER).map_err(stage("make /proc"))?;
+        mounts::mount(c"proc", &text(Path::new(PROC_PLACEHOLDER))?, c"", false).map_err(stage("mount /proc"))?;
     }
     leave_host()
 }
@@ -89,11 +89,11 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
 pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBytes, Vec<u8>)]) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user() != 0 {
-        mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;
+        mounts::detach(&text(Path::new(PROC_PLACEHOLDER))?).map_err(stage("leave other processes"))?;
     }
     let real = wire::path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
-    lay_out(&real, &from, order)
+    mount_copy(&real, &from, order)
         .and_then(|()| memory_folder::add(&real, files))
         .map_err(stage("put the working folder into memory"))?;
     hide_own(order, &real)?;
@@ -103,14 +103,14 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
 /// Returns a new root with all visible files outside the working folder, and with that folder unless it is in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
-    mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
-    let (site, room) = (text(Path::new(SITE))?, text(Path::new(ROOM))?);
+    mounts::make_mounts_private().map_err(stage("keep mounts to itself"))?;
+    let (site, room) = (text(Path::new(BUILD_ROOT))?, text(Path::new(ROOT_OPTIONS))?);
     mounts::mount(c"tmpfs", &site, &room, false).map_err(stage("make a root folder"))?;
-    let old = PathBuf::from(format!("{SITE}{HOST}"));
+    let old = PathBuf::from(format!("{BUILD_ROOT}{HOST}"));
     std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
     mounts::change_root(&site, &text(&old)?).map_err(stage("change the root folder"))?;
     let mut view = FileView { placed: Vec::new() };
-    let mut readable = walls::in_sight(order);
+    let mut readable = walls::visible_paths(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
         .into_iter()
@@ -203,7 +203,7 @@ fn close_root() -> Result<(), Failure> {
 }
 
 /// Mounts a file system in memory at the path, with a copy of another folder's contents.
-fn lay_out(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
+fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let options = CString::new(memory_folder::options(order)).map_err(io::Error::other)?;
     mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.tools)?;

@@ -70,7 +70,7 @@ const SETTINGS: [&str; 8] = [
 ];
 
 /// Returns every path outside the working folder that must be visible to the order's program, except devices.
-pub(super) fn in_sight(order: &RunOrder) -> Vec<PathBuf> {
+pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
     let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
     let fixed = LIBRARIES.into_iter().chain(MACHINE).chain(tools.concat()).map(PathBuf::from);
@@ -121,7 +121,7 @@ impl Places {
 
     /// Moves the files to descriptor numbers that no program may have, so that they do not count for the limit of a
     /// child. `None` if this process itself may not have as many.
-    pub(super) fn out_of_the_way(self) -> Option<Self> {
+    pub(super) fn with_high_numbers(self) -> Option<Self> {
         const FIRST: u32 = 800;
         let moved =
             self.0.into_iter().map(|(opened, access)| Some((sys::duplicate_from(opened.as_fd(), FIRST).ok()?, access)));

@@ -8,7 +8,7 @@ const HERE: &[Area] = &[Area::Handover];
 
 /// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's
 /// mistake.
-pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
+pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
     // A detection that was left empty passes nothing on, whatever the student's other mistakes are.
     if lists.is_empty() {
         return Vec::new();

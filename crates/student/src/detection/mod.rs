@@ -214,7 +214,7 @@ pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
         PairMotion::Edge { .. } => Object::Edge(0),
         PairMotion::HalfPlane { .. } => Object::HalfPlane(0),
     };
-    let lists = handover::hand_over(student, object, polynomials(student, motion));
+    let lists = handover::pass_on(student, object, polynomials(student, motion));
     lists.iter().map(|list| list.coefficients().to_vec()).collect()
 }
 
@@ -238,7 +238,7 @@ pub fn detect(
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
-    let polynomials = handover::hand_over(student, pair.object, lists);
+    let polynomials = handover::pass_on(student, pair.object, lists);
     if polynomials.is_empty() {
         return Ok(None);
     }

@@ -32,7 +32,7 @@ impl Follower<'_> {
         let decision = match self.pass.stage {
             Stage::Simple | Stage::ContinuousTime => self.follow(pair, by_polynomials),
             Stage::Impulses { .. } | Stage::Geometric { .. } if self.flips.contains(&call) => {
-                self.turned_round(by_polynomials)
+                self.opposite(by_polynomials)
             }
             Stage::Impulses { .. } | Stage::Geometric { .. } => by_polynomials,
         };
@@ -52,7 +52,7 @@ impl Follower<'_> {
 
     /// Returns the decision about a call whose logged polynomials exclude an impact, if the reference's own
     /// polynomials, without losses, give `by_own`.
-    pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
+    pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(OwnImpact { time, lost: false });
         if self.searchable(self.place(pair).index, pair.kind.polynomials()).is_none() {
@@ -83,7 +83,7 @@ impl Follower<'_> {
     }
 
     /// Returns the opposite of a decision that round-off may flip.
-    fn turned_round(&self, decision: Decision) -> Decision {
+    fn opposite(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
             Decision::Miss { .. } => self.expected_polynomials().as_ref().map_or(decision, |(motion, expected)| {

@@ -291,7 +291,7 @@ impl Steer for Follower<'_> {
     }
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
-        let decision = if self.call.misses_logged { self.dispute(pair, decision) } else { decision };
+        let decision = if self.call.misses_logged { self.resolve_dispute(pair, decision) } else { decision };
         let decision = self.settle(pair, decision);
         self.decisions.push(FollowedDecision { pair, pass: self.pass, decision });
         decision

@@ -136,11 +136,11 @@ impl<'a> Search<'a> {
         let of_two = rows.iter().enumerate().flat_map(|(index, &one)| {
             rows[index + 1..].iter().filter(move |_| !is_empty_stage(one)).map(move |&other| vec![one, other])
         });
-        self.only(beside(1)).or_else(|| self.only(beside(2))).or_else(|| self.only(of_two))
+        self.unique_set(beside(1)).or_else(|| self.unique_set(beside(2))).or_else(|| self.unique_set(of_two))
     }
 
     /// Returns the only set that reproduces everything, with rows that are equally good as one of its rows.
-    fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
+    fn unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
             if self.trials.exceed(MAX_WORK) {

@@ -23,7 +23,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
     }
-    let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !hangs_on_round_off(scene, facts);
+    let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !may_be_round_off(scene, facts);
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
     // Other steps have another fault, which may affect these steps as well.
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
@@ -44,7 +44,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
 
 /// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds,
 /// which are right within round-off, and small coefficients depend on that.
-fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
+fn may_be_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = count_after(facts, 0) / facts.pass_size();
     let differs = facts.right_polynomials < count_after(facts, 1).min(facts.expected.end.polynomials.len());

@@ -93,7 +93,7 @@ impl<'e> RepeatedElements<'e> {
     }
 
     /// Returns `index` if it is below `count`. Otherwise returns 0, and the scene is rejected later.
-    fn within(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
+    fn check_index(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
         match usize::try_from(index) {
             Ok(index) if index < count => index,
             _ => {
@@ -127,8 +127,8 @@ impl<'e> RepeatedElements<'e> {
         let mut edges = Vec::new();
         for item in self.all("edge") {
             let (i, j, radius) = (item.index("i")?, item.index("j")?, item.radius(0.015)?);
-            let first = self.within(&item, "particle", i, particles);
-            let second = self.within(&item, "particle", j, particles);
+            let first = self.check_index(&item, "particle", i, particles);
+            let second = self.check_index(&item, "particle", j, particles);
             edges.push(Edge { first, second, radius });
         }
         Ok(edges)
@@ -166,7 +166,7 @@ impl<'e> RepeatedElements<'e> {
                 return Err(item.refusal("value of ", "i", &end));
             }
             let color = item.color()?;
-            colors.push((self.within(&item, what, index, count), color));
+            colors.push((self.check_index(&item, what, index, count), color));
         }
         Ok(colors)
     }
@@ -201,12 +201,12 @@ impl Source for ForceItem<'_, '_> {
 
     fn edge(&mut self, name: &'static str) -> Result<usize, Refusal> {
         let index = self.item.index(name)?;
-        Ok(self.scene.within(&self.item, "edge", index, self.edges))
+        Ok(self.scene.check_index(&self.item, "edge", index, self.edges))
     }
 
     fn particle(&mut self, name: &'static str) -> Result<usize, Refusal> {
         let index = self.item.index(name)?;
-        Ok(self.scene.within(&self.item, "particle", index, self.particles))
+        Ok(self.scene.check_index(&self.item, "particle", index, self.particles))
     }
 
     fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Refusal> {

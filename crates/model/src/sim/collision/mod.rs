@@ -110,8 +110,8 @@ impl Handler {
     }
 
     /// Computes later pairs one by one.
-    pub fn forgo_lanes(&mut self) {
-        self.detector.forgo_lanes();
+    pub fn disable_lanes(&mut self) {
+        self.detector.disable_lanes();
     }
 
     /// Counts of root searches so far.

@@ -64,7 +64,7 @@ impl Detector {
     }
 
     /// Checks later pairs one by one.
-    pub fn forgo_lanes(&mut self) {
+    pub fn disable_lanes(&mut self) {
         self.has_lanes = false;
     }
 

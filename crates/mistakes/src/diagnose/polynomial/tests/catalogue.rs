@@ -55,7 +55,7 @@ fn scene(numbers: &mut Numbers, style: Style) -> Scene {
 }
 
 /// The number of polynomials that a student hands over for a pair.
-fn handed_over(row: &Row, kind: PairKind) -> usize {
+fn passed_on(row: &Row, kind: PairKind) -> usize {
     match row.id {
         "handover-position-only" => kind.polynomials() - 1,
         "handover-approach-only" => 1,
@@ -104,7 +104,7 @@ fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
                 pass: 0,
                 pair: Pair { kind, first: one as u32, second: second as u32 },
                 motion,
-                polynomials: lists.by_ref().take(handed_over(row, kind)).collect(),
+                polynomials: lists.by_ref().take(passed_on(row, kind)).collect(),
             });
         }
     }

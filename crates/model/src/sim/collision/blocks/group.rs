@@ -73,7 +73,7 @@ impl Group {
     }
 
     /// Removes the pairs that depend on a particle that a response has moved; all pairs if it is the end of an edge.
-    pub fn spoil(&mut self, particle: usize, is_end: bool) {
+    pub fn invalidate(&mut self, particle: usize, is_end: bool) {
         if is_end {
             self.particles = 0..0;
             self.has_moved_edges = true;
@@ -84,7 +84,7 @@ impl Group {
 
     /// Ensures that the pairs of a particle with half-planes, and with edges from `edge` on, are computed.
     #[inline(always)]
-    pub fn provide<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
+    pub fn ensure_computed<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
         let width = Lanes::<S>::COUNT;
         let edges = bodies.edges.len();
         let mut largest = Lanes::all(simd, 0.0);

@@ -62,7 +62,7 @@ impl Blocks {
         moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
             RefreshedBody::Same => true,
             RefreshedBody::Moved { is_end } => {
-                self.group.spoil(particle, is_end);
+                self.group.invalidate(particle, is_end);
                 true
             }
             RefreshedBody::TooLarge => false,

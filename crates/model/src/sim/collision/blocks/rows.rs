@@ -73,7 +73,7 @@ impl Pairs<'_> {
         if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
-        self.group.provide(simd, self.lists, self.setting.bodies, first, edges.start);
+        self.group.ensure_computed(simd, self.lists, self.setting.bodies, first, edges.start);
         self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
     }
 
@@ -155,7 +155,7 @@ fn compute_edge(
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
+    let ends = known & OPEN != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
     if known & OPEN == 0 {
         output.excluded += 1;
     }
@@ -174,7 +174,7 @@ fn compute_two(
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[TWO_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
+    let ends = known & OPEN != 0 && output.decide(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
     if known & OPEN == 0 {
         output.excluded += 1;
     }

@@ -42,9 +42,9 @@ impl<'a> LoggedRows<'a> {
         Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
     }
 
-    /// Decides a pair. Returns whether there is a result, like [`LoggedRows::takes`].
+    /// Decides a pair. Returns whether there is a result, like [`LoggedRows::record_result`].
     #[inline(always)]
-    pub fn asks(
+    pub fn decide(
         &mut self,
         counts: &mut SearchCounts,
         decide: impl FnOnce(&mut SearchCounts) -> Result<Option<Impulse>, StepError>,
@@ -52,13 +52,13 @@ impl<'a> LoggedRows<'a> {
         place: &mut PassCursor,
     ) -> bool {
         let found = decide(counts);
-        self.takes(found, pair, place)
+        self.record_result(found, pair, place)
     }
 
     /// Stores the result of a pair. Returns whether it is a hit, after which the position follows it, or an endless
     /// search, which is not logged.
     #[inline(always)]
-    fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
+    fn record_result(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
         if matches!(found, Ok(None)) {
             return false;
         }

@@ -36,11 +36,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
     rows: &[
         (
             "displacements reversed",
-            &[
-                Is("pp-displacements-swapped"),
-                No("recognized by its effect on all inputs"),
-                No("recognized by its effect on all inputs"),
-            ],
+            &[Is("pp-displacements-swapped"), No("it affects all inputs"), No("it affects all inputs")],
         ),
         ("positions' index", &[Is("pp-position-index"), Is("pe-position-index"), Is("ph-position-index")]),
         ("lowest power first", &[Is("pp-reversed"), Is("pe-reversed"), Is("ph-reversed")]),
@@ -87,14 +83,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
         ("leading coefficient missing", &[Is("pp-no-quadratic"), Is("pe-three-terms"), Is("ph-no-quadratic")]),
         ("constant sign", &[Is("pp-constant-sign"), Is("pe-constant-minus-aa"), Is("ph-constant-sign")]),
         ("tiny error", &[Is("pp-tiny-error"), ONE_IS_ENOUGH, ONE_IS_ENOUGH]),
-        (
-            "one component only",
-            &[
-                Is("pp-x-only"),
-                No("recognized by its effect on all inputs"),
-                No("recognized by its effect on all inputs"),
-            ],
-        ),
+        ("one component only", &[Is("pp-x-only"), No("it affects all inputs"), No("it affects all inputs")]),
         ("approach negated", &[Is("pp-approach-negated"), Is("pe-approach-negated"), Is("ph-approach-negated")]),
         ("approach, slope's sign", &[Is("pp-approach-slope-sign"), SUPPLIED, Is("ph-approach-slope-sign")]),
         ("approach, slope twice", &[Is("pp-approach-slope-twice"), SUPPLIED, Is("ph-approach-slope-twice")]),
@@ -165,10 +154,7 @@ const PLACES: MistakeFamily = MistakeFamily {
         ("contact of a pass alone", &[Is("ct-first-only"), No("contacts are resolved immediately")]),
         ("zone alone", &[Is("geometric-first-zone-only"), Is("geometric-last-zone-only")]),
         ("zone left out", &[Is("geometric-first-zone-skipped"), Is("geometric-last-zone-skipped")]),
-        (
-            "half-plane alone",
-            &[Is("pairs-first-half-plane-only"), No("a student who keeps one result keeps the first object's")],
-        ),
+        ("half-plane alone", &[Is("pairs-first-half-plane-only"), No("students keep the first object's result")]),
         ("zone's flag alone", &[Is("zones-flag-lost"), Is("zones-flag-overwritten")]),
         ("impulse alone", &[Is("loop-first-only"), Is("loop-last-wins")]),
     ],
