@@ -1,7 +1,9 @@
-//! How a class scales with the number of jobs: the same submissions graded by one job and by more, as ratios to one.
+//! Measures how grading a class scales with the number of jobs: the same submissions graded by one job and by several,
+//! as ratios to one.
 //!
-//! `cargo bench --bench class` prints Markdown. `cargo bench --bench class -- 156 t2m2` grades that many programs on
-//! that suite instead. On a machine with few cores the rows of more jobs are missing: they would show nothing.
+//! `cargo bench --bench class` prints Markdown. `cargo bench --bench class -- 156 t2m2` grades 156 programs on the
+//! suite `t2m2` instead. On a machine with few cores the rows of more jobs are omitted, because they would show
+//! nothing.
 use std::{
     path::Path,
     process::{Command, Stdio},
@@ -9,20 +11,20 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The time, files and memory of a grading.
+/// The time, files and memory of one grading.
 struct Measured {
     wall: Duration,
     user: Duration,
     system: Duration,
-    /// The files that were written.
+    /// The number of files written.
     files: usize,
-    /// The most memory of the grader or of a program, in MiB.
+    /// The peak memory of the grader or of a program, in MiB.
     memory: i64,
 }
 
 fn main() {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    // `cargo test --benches` only wants to know that it builds and starts.
+    // `cargo test --benches` only checks that the benchmark builds and starts.
     if !arguments.iter().any(|argument| argument == "--bench") {
         return;
     }
@@ -46,7 +48,7 @@ fn main() {
     }
 }
 
-/// Hands in right programs, no two of them with the same bytes.
+/// Writes right programs, each with different bytes.
 fn hand_in(folder: &Path, programs: usize) {
     let sample = std::fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
     for number in 0..programs {
@@ -96,7 +98,7 @@ fn walk(folder: &Path) -> usize {
     entries.map(|path| if path.is_dir() { walk(&path) } else { 1 }).sum()
 }
 
-/// Resources that all children have used so far.
+/// Returns the resources that all children have used so far.
 fn children() -> libc::rusage {
     // SAFETY: a zeroed rusage is a valid value, and getrusage only writes to it.
     unsafe {

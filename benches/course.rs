@@ -1,7 +1,7 @@
-//! How fast, as ratios: whole processes against the original's figures, and parts against each other.
+//! Measures speed as ratios: whole processes compared with the original's figures, and parts compared with each other.
 //!
 //! `cargo bench` prints Markdown. The comparison with the original needs the ground-truth corpus (scenes, and the
-//! original's own figures in `baseline.json`, taken on a 2.5 GHz Xeon); without it that part is skipped.
+//! original's own figures in `baseline.json`, taken on a 2.5 GHz Xeon); without it the comparison is skipped.
 use fosssim_oracle::{
     judge::replay::{self, Options},
     scene::{self, Scene},
@@ -18,7 +18,7 @@ use std::{
 const ROUNDS: usize = 5;
 
 fn main() {
-    // `cargo test --benches` only wants to know that it builds and starts.
+    // `cargo test --benches` only checks that the benchmark builds and starts.
     if !std::env::args().any(|argument| argument == "--bench") {
         return;
     }
@@ -42,14 +42,14 @@ fn time(mut work: impl FnMut()) -> Duration {
     median((0..ROUNDS).map(round).collect())
 }
 
-/// The corpus folder, when it is there.
+/// Returns the corpus folder, if it exists.
 fn corpus() -> Option<PathBuf> {
     let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/corpus");
     let folder = std::env::var_os("FOSSSIM_CORPUS").map_or(beside, PathBuf::from);
     folder.is_dir().then_some(folder)
 }
 
-/// Whole processes, drop-in command, on the course's scenes at hand.
+/// Measures whole processes of the drop-in command, on the available course scenes.
 fn against_the_original() {
     let Some(corpus) = corpus() else {
         println!("No corpus: the comparison with the original is skipped.\n");
@@ -102,7 +102,7 @@ fn row(name: &str, theirs: [f64; 2], ours: [f64; 2]) {
     );
 }
 
-/// Parts of the program against each other, on all embedded scenes.
+/// Compares parts of the program with each other, on all embedded scenes.
 fn parts() {
     let scenes: Vec<(Scene, Vec<u8>)> = library::names()
         .map(|name| {
@@ -163,11 +163,11 @@ fn ratio(slow: Duration, fast: Duration) -> f64 {
     slow.as_secs_f64() / fast.as_secs_f64()
 }
 
-/// The processor time that grading adds to that of the program that is graded.
+/// Measures the processor time that grading adds to that of the graded program.
 fn sandbox() {
     let (grader, sample) = (env!("CARGO_BIN_EXE_fosssim-oracle"), env!("CARGO_BIN_EXE_fosssim-sample"));
     let folder = tempfile::tempdir().expect("a folder");
-    // The largest course scene at hand; without the corpus the largest embedded one.
+    // The largest available course scene, or the largest embedded one without the corpus.
     let xml = corpus()
         .and_then(|corpus| std::fs::read(corpus.join("scenes/t2m2/HolisticTests/test00.xml")).ok())
         .or_else(|| library::scene("HolisticTests/crowd-of-twenty-balls").map(<[u8]>::to_vec))
@@ -198,7 +198,7 @@ fn ms(time: Duration) -> f64 {
     time.as_secs_f64() * 1e3
 }
 
-/// Processor time of all children so far.
+/// Returns the processor time of all children so far.
 fn children() -> Duration {
     // SAFETY: a zeroed rusage is a valid value, and getrusage only writes to it.
     let usage = unsafe {

@@ -3,7 +3,7 @@
 use fosssim_oracle::{diagnose, report::words::explanation, scene};
 use std::{env, error::Error, fs};
 
-/// Returns a line per mistake, the likeliest first, with the share of the samples that it reproduces.
+/// Returns one line per mistake, the likeliest first, with the share of the samples that it reproduces.
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
     let line = |found: &diagnose::Explanation| {

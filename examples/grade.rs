@@ -11,7 +11,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs, path::Path, process::ExitCode};
 
-/// Returns a line per program: its verdict and its points.
+/// Returns one line per program, with its verdict and its points.
 pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String, Box<dyn Error>> {
     let mut submissions = Vec::new();
     for entry in fs::read_dir(folder)? {
@@ -40,7 +40,7 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
 }
 
 fn main() -> Result<ExitCode, Box<dyn Error>> {
-    // The sandbox starts this very program again as its supervisor.
+    // The sandbox starts this program again as its supervisor.
     if let Some(code) = supervisor_main(env::args_os()) {
         return Ok(code);
     }

@@ -6,7 +6,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs};
 
-/// Returns the two verdicts, and the place where trace and reference first part.
+/// Returns the two verdicts, and the place of the first difference between trace and reference.
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
     let options = replay::Options { fair: true, ..replay::Options::default() };

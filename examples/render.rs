@@ -1,4 +1,4 @@
-//! Draws where a scene ends as SVG: `cargo run --example render -- SCENE.xml > end.svg`.
+//! Draws the end of a scene as SVG: `cargo run --example render -- SCENE.xml > end.svg`.
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
     render::{Extent, Painter, PictureOptions, Size, svg},
@@ -7,7 +7,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs};
 
-/// Returns the reference's last step as a picture.
+/// Returns the reference's last state as a picture.
 pub fn run(scene: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
     let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);

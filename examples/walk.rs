@@ -1,4 +1,4 @@
-//! Walks a trace, record by record: `cargo run --example walk -- SCENE.xml TRACE.bin`.
+//! Prints a trace, record by record: `cargo run --example walk -- SCENE.xml TRACE.bin`.
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
     scene,
@@ -6,7 +6,7 @@ use fosssim_oracle::{
 };
 use std::{env, error::Error, fs};
 
-/// Returns a line per record that holds an impulse: how many there are, and where the first particle is.
+/// Returns one line per record with impulses: their number, and the position of the first particle.
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let layout = Layout::for_scene(&scene::read("scene", scene)?.scene);
     let mut reader = Reader::from_slice(trace, layout);

@@ -17,7 +17,7 @@ const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
 const NAME_PREFIX: &str = "fosssim-sample.";
 
 /// The greatest number of mistakes together.
-const MOST: usize = Student::MOST;
+const MAX_COUNT: usize = Student::MAX_MISTAKES;
 
 /// A sample submission: simulates a scene as a student's program would, with documented mistakes on request.
 #[derive(Debug, Parser)]
@@ -85,8 +85,8 @@ fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>)
         return Ok(Student::default());
     };
     let mistakes = ids.split(',').map(|id| mistake(source, id)).collect::<Result<Vec<_>, _>>()?;
-    if mistakes.len() > MOST {
-        return Err(format!("{source} asks for {} mistakes, but at most {MOST} can be made at once", mistakes.len()));
+    if mistakes.len() > MAX_COUNT {
+        return Err(format!("{source} names {} mistakes, but at most {MAX_COUNT} can be combined", mistakes.len()));
     }
     Ok(mistakes.into_iter().fold(Student::default(), |student, mistake| student.with_mistake(Some(mistake))))
 }
@@ -131,7 +131,7 @@ mod tests {
         for id in ["pp-no-two", "pe-empty", "geometric-empty"] {
             assert!(student::find(id).is_some_and(|row| several.makes(row.mistake)), "{id}");
         }
-        let message = student(None, Some(["pp-empty"; MOST + 1].join(",")), None).unwrap_err();
-        assert!(message.contains(&format!("at most {MOST}")), "{message}");
+        let message = student(None, Some(["pp-empty"; MAX_COUNT + 1].join(",")), None).unwrap_err();
+        assert!(message.contains(&format!("at most {MAX_COUNT}")), "{message}");
     }
 }

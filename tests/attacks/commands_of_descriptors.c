@@ -1,4 +1,4 @@
-// promise: Commands for descriptors that are on no list are rejected.
+// promise: Descriptor commands that are not listed are rejected.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A program cannot count the machine's processes by the links of a /proc, nor reach its root.
+// promise: A program cannot count the machine's processes by the links of /proc, or open its root folder.
 // expect: exited 0
 // needs: private processes
 #include "attack.h"

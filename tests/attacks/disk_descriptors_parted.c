@@ -1,4 +1,4 @@
-// promise: Threads cannot give up their common descriptors later.
+// promise: A thread cannot stop sharing its file descriptors with the others.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Files that were removed while they are open count toward the folder's limit.
+// promise: Open files that were removed count toward the folder's limit.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A thread cannot have descriptors of its own, which would hide files.
+// promise: A thread cannot have separate descriptors, which would hide files.
 // expect: violation clone
 #include "attack.h"
 static int alone(void *nothing) {

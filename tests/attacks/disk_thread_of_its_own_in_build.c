@@ -1,4 +1,4 @@
-// promise: A thread of a build step cannot have descriptors of its own.
+// promise: A thread of a build step cannot have separate descriptors.
 // expect: violation clone
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot execute a file by any number of a descriptor.
+// promise: A program cannot execute a file by any descriptor number.
 // expect: violation execveat
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A build step executes no file that has no place: neither from memory nor without a name.
+// promise: A build step cannot execute a file in memory or a file without a name.
 // expect: exited 0
 // policy: tools
 // needs: hidden files

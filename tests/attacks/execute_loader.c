@@ -1,4 +1,4 @@
-// promise: A submission cannot have the system's loader run another file.
+// promise: A submission cannot make the system's loader run another file.
 // expect: violation execve
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A flood of a build step is dropped beyond its limit, whoever prints, until the time is used up.
+// promise: A build step's output beyond its limit is dropped, whichever process prints, until the time is used up.
 // expect: cpu or wall
 // policy: tools
 #include "attack.h"

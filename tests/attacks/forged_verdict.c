@@ -1,4 +1,4 @@
-// promise: What a program prints is kept as bytes and never taken for a verdict.
+// promise: A program's output is kept as bytes and never read as a verdict.
 // expect: exited 3
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A submission cannot start other processes by the system call's number either.
+// promise: A submission cannot start other processes by the number of the system call.
 // expect: violation
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Files from outside cannot be linked into the folder, nor the folder's out of it.
+// promise: Files cannot be linked into the folder from outside, or out of the folder.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: The system calls of 32-bit programs are closed.
+// promise: A program cannot use the system calls of 32-bit programs.
 // expect: violation
 // needs: x86_64
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot advise the kernel on the memory of others, nor compare descriptors with theirs.
+// promise: A program cannot advise the kernel on the memory of other processes, or compare its descriptors with theirs.
 // expect: violation kcmp
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: The asynchronous calls are closed in a build step.
+// promise: A build step cannot use the asynchronous calls (io_uring).
 // expect: violation io_uring_setup
 // policy: tools
 #include "attack.h"

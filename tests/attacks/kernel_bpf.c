@@ -1,4 +1,4 @@
-// promise: Programs for the kernel (BPF) cannot be loaded.
+// promise: A program cannot load programs into the kernel (BPF).
 // expect: violation bpf
 #include "attack.h"
 int main(int argc, char **argv) {

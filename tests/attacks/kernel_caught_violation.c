@@ -1,4 +1,4 @@
-// promise: A program cannot go on after a forbidden call by catching its signal.
+// promise: A program cannot continue after a forbidden call by catching its signal.
 // expect: violation ptrace
 #include "attack.h"
 #include <sys/ptrace.h>

@@ -1,4 +1,4 @@
-// promise: The root folder cannot be changed.
+// promise: A program cannot change its root folder.
 // expect: violation chroot
 #include "attack.h"
 int main(int argc, char **argv) {

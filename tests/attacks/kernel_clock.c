@@ -1,4 +1,4 @@
-// promise: The machine's clock cannot be set.
+// promise: A program cannot set the machine's clock.
 // expect: violation clock_settime
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: The newer way to start a process does not exist.
+// promise: A program cannot start a process by the newer call (clone3).
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Namespaces cannot be made by starting a process.
+// promise: A program cannot create namespaces by starting a process.
 // expect: violation clone
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Descriptors cannot be taken out of other processes.
+// promise: A program cannot take descriptors from other processes.
 // expect: violation pidfd_getfd
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A program cannot take the sandbox's walls down.
+// promise: A program cannot switch off the system call filter or its other restrictions.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Files cannot be opened by handle.
+// promise: A program cannot open files by handle.
 // expect: violation open_by_handle_at
 #include "attack.h"
 int main(int argc, char **argv) {

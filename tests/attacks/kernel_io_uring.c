@@ -1,4 +1,4 @@
-// promise: The asynchronous calls (io_uring) are closed.
+// promise: A program cannot use the asynchronous calls (io_uring).
 // expect: violation io_uring_setup
 #include "attack.h"
 int main(int argc, char **argv) {

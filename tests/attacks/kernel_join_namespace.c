@@ -1,4 +1,4 @@
-// promise: Namespaces cannot be joined.
+// promise: A program cannot join namespaces.
 // expect: violation setns
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: The kernel's key store is closed.
+// promise: A program cannot use the kernel's key store.
 // expect: violation keyctl
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: The kernel's key store is closed to build steps.
+// promise: A build step cannot use the kernel's key store.
 // expect: violation keyctl
 // policy: tools
 #include "attack.h"

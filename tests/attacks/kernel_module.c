@@ -1,4 +1,4 @@
-// promise: Kernel modules cannot be loaded.
+// promise: A program cannot load kernel modules.
 // expect: violation init_module
 #include "attack.h"
 int main(int argc, char **argv) {

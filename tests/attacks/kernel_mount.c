@@ -1,4 +1,4 @@
-// promise: Nothing can be mounted.
+// promise: A program cannot mount file systems.
 // expect: violation mount
 #include "attack.h"
 #include <sys/mount.h>

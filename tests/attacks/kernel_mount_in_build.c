@@ -1,4 +1,4 @@
-// promise: A build step can mount nothing.
+// promise: A build step cannot mount file systems.
 // expect: violation mount
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Nothing can be mounted by the newer calls.
+// promise: A program cannot mount file systems with the newer calls (fsopen, move_mount).
 // expect: violation fsopen
 #include "attack.h"
 int main(int argc, char **argv) {

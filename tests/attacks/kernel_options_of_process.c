@@ -1,4 +1,4 @@
-// promise: A program cannot make itself unreadable to its supervisor, traceable by others, or change what it seems to be.
+// promise: A program cannot make itself unreadable to its supervisor or traceable by others, or change its apparent identity.
 // expect: exited 0
 #include "attack.h"
 #ifndef PR_SET_IO_FLUSHER

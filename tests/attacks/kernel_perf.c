@@ -1,4 +1,4 @@
-// promise: Performance counters are closed.
+// promise: A program cannot use performance counters.
 // expect: violation perf_event_open
 #include "attack.h"
 int main(int argc, char **argv) {

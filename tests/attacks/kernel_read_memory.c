@@ -1,4 +1,4 @@
-// promise: The memory of other processes cannot be read.
+// promise: A program cannot read the memory of other processes.
 // expect: violation process_vm_readv
 #include "attack.h"
 int main(int argc, char **argv) {

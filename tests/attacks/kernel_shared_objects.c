@@ -1,4 +1,4 @@
-// promise: Nothing can be left in the kernel's shared memory, semaphores and queues.
+// promise: A program cannot leave data in the kernel's shared memory, semaphores and queues.
 // expect: exited 0
 #include "attack.h"
 #include <mqueue.h>

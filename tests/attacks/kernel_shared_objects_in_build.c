@@ -1,4 +1,4 @@
-// promise: A build step leaves nothing in the kernel's shared memory, semaphores and queues.
+// promise: A build step cannot leave data in the kernel's shared memory, semaphores and queues.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: The grader cannot be traced.
+// promise: A program cannot trace the grader.
 // expect: violation ptrace
 #include "attack.h"
 #include <sys/ptrace.h>

@@ -1,4 +1,4 @@
-// promise: A program cannot request to be traced.
+// promise: A program cannot let its parent trace it.
 // expect: violation ptrace
 #include "attack.h"
 #include <sys/ptrace.h>

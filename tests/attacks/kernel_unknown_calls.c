@@ -1,4 +1,4 @@
-// promise: System calls that are on no list do not exist.
+// promise: System calls that are not listed do not exist for a program.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

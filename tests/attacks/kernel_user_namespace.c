@@ -1,4 +1,4 @@
-// promise: User namespaces cannot be made.
+// promise: A program cannot create user namespaces.
 // expect: violation unshare
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A build step cannot make user namespaces.
+// promise: A build step cannot create user namespaces.
 // expect: violation unshare
 // policy: tools
 #include "attack.h"

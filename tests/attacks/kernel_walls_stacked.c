@@ -1,4 +1,4 @@
-// promise: A program cannot install filters of its own, which could observe system calls or answer them.
+// promise: A program cannot install its own filters, which could observe system calls or answer them.
 // expect: exited 0
 #include "attack.h"
 #ifndef PR_SET_SYSCALL_USER_DISPATCH

@@ -1,4 +1,4 @@
-// promise: A build step cannot install filters of its own.
+// promise: A build step cannot install its own filters.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

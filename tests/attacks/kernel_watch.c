@@ -1,4 +1,4 @@
-// promise: Files of others cannot be watched or locked.
+// promise: A program cannot watch or lock files of others.
 // expect: exited 0
 #include "attack.h"
 #include <sys/inotify.h>

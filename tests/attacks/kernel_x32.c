@@ -1,4 +1,4 @@
-// promise: The x32 numbers of system calls do not exist.
+// promise: A program cannot use the x32 numbers of system calls.
 // expect: exited 0
 // needs: x86_64
 #include "attack.h"

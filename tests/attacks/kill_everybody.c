@@ -1,4 +1,4 @@
-// promise: A program cannot signal all processes at once.
+// promise: A program cannot signal all processes together.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A build step signals its own processes only.
+// promise: A build step can signal only its own processes.
 // expect: exited 0
 // policy: tools
 // needs: signal scope

@@ -1,4 +1,4 @@
-// promise: A program whose main thread has left and that ignores every signal is ended.
+// promise: A program that ignores every signal is ended even if its main thread has ended.
 // expect: wall
 // wall: 400
 #include "attack.h"

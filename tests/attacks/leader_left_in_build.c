@@ -1,4 +1,4 @@
-// promise: A build step leaves no daemon whose main thread has left.
+// promise: A build step cannot leave a daemon whose main thread has ended.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

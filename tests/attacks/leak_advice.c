@@ -1,4 +1,4 @@
-// promise: A program cannot have pages leave memory, age, merge or move, its own or those of files.
+// promise: A program cannot make its own pages or those of files leave memory, age, merge or move.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A build step cannot have pages of files leave memory, age, merge or move.
+// promise: A build step cannot make pages of files leave memory, age, merge or move.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

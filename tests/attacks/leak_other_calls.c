@@ -1,4 +1,4 @@
-// promise: A program cannot read or change what the kernel keeps for all programs.
+// promise: A program cannot read or change data that the kernel shares between all programs.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

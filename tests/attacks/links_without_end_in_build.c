@@ -1,4 +1,4 @@
-// promise: Links count as files.
+// promise: Links count toward the limit of files.
 // expect: folder
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A build step locks files of its own folder only.
+// promise: A build step can lock only files of its own folder.
 // expect: exited 0
 // policy: tools
 // needs: named violations

@@ -1,4 +1,4 @@
-// promise: Files of the system cannot be locked, which others would notice.
+// promise: A program cannot lock files of the system, which others would notice.
 // expect: exited 0
 #include "attack.h"
 #include <sys/file.h>

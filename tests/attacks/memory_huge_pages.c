@@ -1,4 +1,4 @@
-// promise: A program cannot have huge pages, which no counter shows.
+// promise: A program cannot use huge pages, which no counter shows.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

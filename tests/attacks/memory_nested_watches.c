@@ -1,4 +1,4 @@
-// promise: Watches that watch each other are limited by the kernel and do no harm.
+// promise: Watches that watch each other are limited by the kernel and are harmless.
 // expect: exited 0
 #include "attack.h"
 #include <sys/epoll.h>

@@ -1,4 +1,4 @@
-// promise: Pipes cannot be made larger.
+// promise: A program cannot enlarge pipes.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A program cannot have shared memory that is in no file, which no counter shows.
+// promise: A program cannot use shared memory without a file, which no counter shows.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A build step cannot have shared memory that is in no file.
+// promise: A build step cannot use shared memory without a file.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot have nameless shared memory by the newer name of the same mapping.
+// promise: A program cannot use shared memory without a file by the newer mapping type (MAP_SHARED_VALIDATE).
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

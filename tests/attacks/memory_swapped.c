@@ -1,4 +1,4 @@
-// promise: Memory that was moved to a disk counts toward the limit, and a program cannot move it there.
+// promise: Swapped memory counts toward the limit, and a program cannot swap memory itself.
 // expect: memory
 #include "attack.h"
 int main(int argc, char **argv) {

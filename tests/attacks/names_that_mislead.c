@@ -1,4 +1,4 @@
-// promise: Names with marks that turn the direction of text, with blanks of no width or without end do no harm.
+// promise: Very long names, and names with direction marks or zero-width blanks, are harmless.
 // expect: exited 0
 // leaves: honest
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A program cannot ask which processes there are.
+// promise: A program cannot find out which processes exist.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: The memory of a build process that was made a child of the supervisor counts toward the limit.
+// promise: The memory of a build process that became a child of the supervisor counts toward the limit.
 // expect: memory
 // policy: tools
 #include "attack.h"

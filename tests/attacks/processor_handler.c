@@ -1,4 +1,4 @@
-// promise: Ignoring the signals of limits gains no processor time.
+// promise: A program gains no processor time by ignoring the signals of limits.
 // expect: cpu
 #include "attack.h"
 int main(int argc, char **argv) {

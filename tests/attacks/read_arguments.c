@@ -1,4 +1,4 @@
-// promise: The command lines of other processes cannot be read.
+// promise: A program cannot read the command lines of other processes.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

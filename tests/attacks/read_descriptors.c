@@ -1,4 +1,4 @@
-// promise: No descriptor of the grader is inherited.
+// promise: A program inherits no descriptor of the grader.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

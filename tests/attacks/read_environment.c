@@ -1,4 +1,4 @@
-// promise: The grader's environment does not reach the program.
+// promise: A program does not receive the grader's environment.
 // expect: exited 0
 #include "attack.h"
 extern char **environ;

@@ -1,4 +1,4 @@
-// promise: The grader's own program, which holds the answers, cannot be read.
+// promise: A program cannot read the grader's own program, which holds the answers.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

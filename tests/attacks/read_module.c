@@ -1,4 +1,4 @@
-// promise: The grader's module for Python cannot be read, wherever pip has put it.
+// promise: A program cannot read the grader's module for Python, wherever pip has put it.
 // expect: exited 0
 #include "attack.h"
 #include <glob.h>

@@ -1,4 +1,4 @@
-// promise: Other submissions cannot be read or listed.
+// promise: A program cannot read or list other submissions.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Files that only their owner may read cannot be read.
+// promise: A program cannot read files that only their owner may read.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: Environment, memory, descriptors and arguments of other processes cannot be read.
+// promise: A program cannot read the environment, memory, descriptors and arguments of other processes.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: References cannot be read by their path.
+// promise: A program cannot read references by their path.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

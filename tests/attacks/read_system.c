@@ -1,4 +1,4 @@
-// promise: The machine's settings, homes and logs cannot be read.
+// promise: A program cannot read the machine's settings, home folders and logs.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

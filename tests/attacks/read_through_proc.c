@@ -1,4 +1,4 @@
-// promise: The links of /proc open no file that is closed otherwise.
+// promise: A program cannot open files through the links of /proc that it cannot open directly.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

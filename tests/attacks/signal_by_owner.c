@@ -1,4 +1,4 @@
-// promise: A program cannot have the kernel signal others for a descriptor of its own.
+// promise: A program cannot make the kernel signal others for one of its descriptors.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

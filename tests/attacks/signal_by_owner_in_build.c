@@ -1,4 +1,4 @@
-// promise: A build step cannot have the kernel signal others for a descriptor of its own.
+// promise: A build step cannot make the kernel signal others for one of its descriptors.
 // expect: exited 0
 // policy: tools
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A terabyte of holes in place of the trace is rejected.
+// promise: A trace that is a terabyte of holes is rejected.
 // expect: folder
 #include "attack.h"
 int main(int argc, char **argv) {

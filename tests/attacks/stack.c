@@ -1,4 +1,4 @@
-// promise: A stack that grows without end crashes the program and harms no other process.
+// promise: A stack that grows without limit crashes the program and affects no other process.
 // expect: signalled 11
 #include "attack.h"
 static int deeper(volatile char *above) {

@@ -1,4 +1,4 @@
-// promise: A flood on standard error is read and dropped beyond its limit, until the time is used up.
+// promise: Output on standard error beyond its limit is read and dropped, until the time is used up.
 // expect: cpu or wall
 #include "attack.h"
 int main(int argc, char **argv) {

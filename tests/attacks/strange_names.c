@@ -1,4 +1,4 @@
-// promise: Strange file names do no harm.
+// promise: Unusual file names are harmless.
 // expect: exited 0
 // leaves: honest
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A child that goes on after the program's end cannot change the collected trace.
+// promise: A child that continues after the program's end cannot change the collected trace.
 // expect: exited 0
 // policy: tools
 // leaves: honest

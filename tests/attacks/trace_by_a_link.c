@@ -1,4 +1,4 @@
-// promise: A folder in the way to the trace is not followed.
+// promise: A link on the path to the trace is not followed.
 // expect: exited 0
 // leaves: nothing
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A pipe, device or socket in place of the trace cannot be made.
+// promise: A program cannot create a pipe, device or socket with the trace's name.
 // expect: exited 0
 // leaves: nothing
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: A trace without end ends the run at its limit.
+// promise: An endless trace ends the run at its limit.
 // expect: output
 #include "attack.h"
 int main(int argc, char **argv) {

@@ -1,4 +1,4 @@
-// promise: A folder in place of the trace is not collected.
+// promise: A folder with the trace's name is not collected.
 // expect: exited 0
 // leaves: refused
 #include "attack.h"

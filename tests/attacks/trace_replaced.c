@@ -1,4 +1,4 @@
-// promise: A program is judged by the regular file that it leaves at the trace's place.
+// promise: A program is judged by the regular file that it leaves under the trace's name.
 // expect: exited 0
 // leaves: second
 #include "attack.h"

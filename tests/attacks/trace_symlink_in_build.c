@@ -1,4 +1,4 @@
-// promise: A link in place of the trace is not followed.
+// promise: A link with the trace's name is not followed.
 // expect: exited 0
 // policy: tools
 // leaves: refused

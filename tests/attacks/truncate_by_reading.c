@@ -1,4 +1,4 @@
-// promise: A file that may be read cannot be emptied by opening it for reading.
+// promise: A program cannot empty a file by opening it for reading.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

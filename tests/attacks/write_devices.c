@@ -1,4 +1,4 @@
-// promise: Devices and the kernel's settings are out of reach.
+// promise: A program cannot write to devices or change the kernel's settings.
 // expect: exited 0
 // needs: file rules
 #include "attack.h"

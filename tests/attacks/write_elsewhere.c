@@ -1,4 +1,4 @@
-// promise: Nothing can be written outside the working folder.
+// promise: A program cannot write outside the working folder.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

@@ -1,4 +1,4 @@
-// promise: Permission bits, owners, times and attributes of the grader's files cannot be changed.
+// promise: A program cannot change permission bits, owners, times and attributes of the grader's files.
 // expect: exited 0
 #include "attack.h"
 #include <sys/xattr.h>

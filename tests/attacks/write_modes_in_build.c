@@ -1,4 +1,4 @@
-// promise: A build step can change permission bits in its own folder only.
+// promise: A build step can change permission bits only in its own folder.
 // expect: exited 0
 // policy: tools
 // needs: named violations

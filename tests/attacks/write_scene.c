@@ -1,4 +1,4 @@
-// promise: The scene can be read, but not rewritten.
+// promise: A program can read the scene, but not rewrite it.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

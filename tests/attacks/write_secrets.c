@@ -1,4 +1,4 @@
-// promise: References cannot be changed, moved or removed.
+// promise: A program cannot change, move or remove references.
 // expect: exited 0
 // needs: hidden files
 #include "attack.h"

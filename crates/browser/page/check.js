@@ -1,13 +1,15 @@
-// A trace is checked: the report is the file that the command line writes, in a frame of its own.
-// The list holds what its reader has chosen; with its first choice each trace is recognized anew. `given` comes with a trace.
+// Checks a trace. The report is the same file that the command line writes, shown in a frame. The list holds the
+// reader's choice; as long as its first entry is chosen, the scene of each trace is recognized. `given` is the name of
+// the scene that comes with a trace.
 const check = { oracle: new Oracle(), trace: null, given: null, others: [], own: null, report: null, run: 0 };
-// The strict reader points at a place of its excerpt, which takes letters of one width.
+// The strict reader marks a place in its excerpt, which needs a monospaced font.
 const say = (words, look = "") => {
   $("said").textContent = words;
   $("said").className = words.includes("\n") ? `${look} excerpt` : look;
 };
 
-// A dropped file that may be read again later: the handle sees what was written since. Browsers unpack gzip themselves.
+// A dropped file that can be read again later. Its handle provides the current contents. Browsers unpack gzip
+// themselves.
 async function freshFile(item) {
   const file = item.handle?.getFile ? await item.handle.getFile() : item.file;
   if (!/\.gz$/i.test(file.name)) return file;
@@ -39,7 +41,7 @@ async function takeFiles(items, scene = null) {
   if (check.own) say("Now drop the trace.");
 }
 
-// A scene is read when it is dropped: what is wrong with it is told at once.
+// Reads a scene when it is dropped, and shows its errors immediately.
 async function takeScene({ file }) {
   check.own = { name: file.name, xml: new Uint8Array(await file.arrayBuffer()) };
   let own = $("scene").querySelector("option.own");
@@ -50,14 +52,14 @@ async function takeScene({ file }) {
   await check.oracle.ask({ do: "read", name: file.name }, { blobs: [check.own.xml] });
 }
 
-// A scene as the program is asked for it: a course's and a dropped one have their XML with them.
+// Returns a scene for a request. Scenes of a course and dropped scenes include their XML.
 function sceneOf(value) {
   const own = ownScene(value);
   if (own) return { name: own.name, xml: bytesOf(own.xml) };
   return value === "own" ? check.own : { name: `asset:${value}` };
 }
 
-// The scene of a trace, where nobody has chosen it: a trace begins with the state of its scene.
+// Returns the scene of a trace if none is chosen. A trace begins with the state of its scene.
 async function recognized(file) {
   const name = bare(file.name);
   const own =
@@ -83,7 +85,7 @@ async function recognized(file) {
   );
 }
 
-// The report that was there is one of another trace.
+// Removes the previous report, which belongs to another trace.
 function failed(error) {
   $("frame").hidden = $("save-html").hidden = $("save-json").hidden = true;
   $("doing").hidden = !check.trace;
@@ -128,7 +130,7 @@ async function judge() {
     document.body.classList.toggle("reads", current() === "check");
     const { verdict, accepted, difference } = answer.value;
     const others = check.others.length
-      ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; a folder of them belongs under All traces.`
+      ? ` Not checked: ${check.others.join(", ")}. One trace is checked at a time; drop a folder of traces under All traces.`
       : "";
     say(
       `${file.name}: ${verdict}${difference ? ` (${difference})` : ""}, judged in ${((performance.now() - started) / 1000).toFixed(2)} s on this computer.${others}`,
@@ -188,7 +190,7 @@ function readsAgain(event) {
 async function dropped(event) {
   event.preventDefault();
   document.body.classList.remove("drops");
-  // Handles have to be asked for before anything is waited for.
+  // Handles must be requested before the first await.
   const items = [...event.dataTransfer.items].filter((item) => item.kind === "file");
   const handles = items.map((item) => item.getAsFileSystemHandle?.().catch(() => null));
   const entries = items.map((item, number) => ({
@@ -214,7 +216,7 @@ async function dropped(event) {
   takeFiles(files);
 }
 
-// Files may be dropped anywhere, also on the report, which is a document of its own; so it is with the key.
+// Accept drops and the shortcut key everywhere, including in the report's own document.
 function listens(target) {
   target.addEventListener("keydown", readsAgain);
   target.addEventListener("dragover", (event) => {

@@ -1,5 +1,5 @@
-// One instance of the module, and its three functions: a request is a list of byte strings, the first of them JSON, and so
-// is an answer. `host` reads dropped files and hears of progress.
+// One instance of the module. Requests and answers are lists of byte strings, the first of which is JSON. `host` reads
+// dropped files and receives progress.
 function engine(module, host) {
   let why = null;
   const bytes = (at, length) => new Uint8Array(exports.memory.buffer, at, length);

@@ -1,4 +1,4 @@
-// One pair: what the reference computes for it, redrawn while it is changed.
+// Shows one pair and the reference's result for it, redrawn after each change.
 const PAIRS = {
   pe: {
     points: [
@@ -60,7 +60,7 @@ const pair = { oracle: new Oracle(), now: structuredClone(PRESETS.first) };
 function controls() {
   const { kind, points, radii, plane } = pair.now,
     { points: names, radii: owners } = PAIRS[kind];
-  // A number and a slider of the same value.
+  // Returns a number field and a slider with the same value.
   const field = (label, list, index, least) => {
     const value = list[index];
     const number = el("input", { type: "number", step: "any", min: least ?? false, value, "aria-label": label });
@@ -112,7 +112,7 @@ function controls() {
   );
 }
 
-// The pair at the start (lines) and at the end (dashes), with arrows between.
+// Draws the pair at the start (lines) and at the end (dashes), with arrows between.
 function sketch() {
   const { kind, points, radii, plane } = pair.now;
   const all = points.flatMap(([x, y, dx, dy], point) => {
@@ -127,7 +127,7 @@ function sketch() {
   if (plane) all.push([plane[0], plane[1]]);
   const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))),
     high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
-  // While a point is held the paper stays where it is.
+  // The view does not move while a point is held.
   pair.view = pair.held
     ? pair.view
     : {
@@ -182,7 +182,7 @@ function sketch() {
         svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }),
       );
   points.forEach(([x, y, dx, dy], point) => {
-    // A name stands beside its arrow.
+    // A name is next to its arrow.
     const length = Math.hypot(dx, dy);
     const [along, up] = length ? [dx / length, dy / length] : [0.7, 0.7];
     const label = svg("text", { x: X(x) - 14 * up, y: Y(y) - 14 * along + 4, "text-anchor": "middle" });
@@ -198,7 +198,7 @@ function sketch() {
   $("sketch").replaceChildren(...shapes);
 }
 
-// Places that can be held: the tips of displacements, and above them, so that they are found first, points.
+// Returns the places that can be dragged: the tips of displacements, and above them the points, which are found first.
 function handles() {
   const { points, plane } = pair.now;
   const of = (list, from, base) => ({
@@ -216,7 +216,7 @@ function handles() {
   ];
 }
 
-// A point is moved with mouse, finger or pen, to places that have few digits; fields and sliders do the same by keyboard.
+// Moves a point by mouse, finger or pen to places with few digits. Fields and sliders do the same by keyboard.
 function drags(paper) {
   paper.addEventListener("pointerdown", (event) => {
     const handle = event.target.dataset.handle;
@@ -265,7 +265,7 @@ function asked() {
   return { do: "detect", kind, center: points[0], radius: radii[0], point: plane.slice(0, 2), normal: plane.slice(2) };
 }
 
-// One answer at a time is asked for; the last wish counts.
+// Requests one answer at a time; of several pending requests, only the last is sent.
 async function look() {
   sketch();
   $("command").textContent = command();
@@ -315,7 +315,7 @@ unpacked.then(
   },
   (error) =>
     say(
-      `This browser can't run the checker: ${error.message}. Take Chrome 103, Firefox 113, Safari 16.4 or newer.`,
+      `This browser can't run the checker: ${error.message}. Use Chrome 103, Firefox 113, Safari 16.4 or newer.`,
       "bad",
     ),
 );

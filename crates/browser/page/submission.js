@@ -1,5 +1,5 @@
-// A submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and what became right since the
-// last drop.
+// Grades a submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and the changes since
+// the last drop.
 const courseSuite = course && {
   name: "",
   isForStudents: course.isForStudents,
@@ -9,7 +9,7 @@ const courseSuite = course && {
 };
 const marks = { oracle: new Oracle(), files: new Map(), suite: courseSuite, last: null, json: null };
 
-// All files below what was dropped, by their paths in it.
+// Collects all files below a dropped folder, with their paths.
 async function walk(entry, handle, path, found) {
   if (handle?.kind === "directory") {
     for await (const [name, inner] of handle.entries())
@@ -29,7 +29,7 @@ async function walk(entry, handle, path, found) {
   return found;
 }
 
-// A dropped suite brings its scenes along: XML beside it or below. Everything else is the submission.
+// A dropped suite includes its scenes: XML files next to it or below. All other files are the submission.
 async function takeFolder(name, found) {
   const suite = found.find(({ path }) => /(^|\/)[^/]*\.toml$/i.test(path));
   if (suite) {
@@ -46,7 +46,7 @@ async function takeFolder(name, found) {
   const traces = found.filter(({ path }) => /\.bin(\.(zst|gz))?$/i.test(path));
   if (traces.length) {
     marks.name = name;
-    // A trace that lies there unpacked, too, is the newer one.
+    // If a trace is also there unpacked, the unpacked file is newer.
     marks.files = new Map(
       traces
         .sort((a, b) => b.path.length - a.path.length)
@@ -60,8 +60,8 @@ async function takeFolder(name, found) {
     : "There is no trace in that folder: they are called Group/name.bin.";
 }
 
-// The trace of a scene, under its whole name or the name behind its group; below a folder of the folder if that is where
-// the first group lies.
+// Returns the trace of a scene, by its full name or the name without its group. If the first group is in a subfolder,
+// that folder is searched.
 function traceOf(scene, below) {
   const paths = [`${below}${scene}.bin`, `${below}${scene.split("/").pop()}.bin`];
   return paths.find((path) => marks.files.has(path)) ?? null;
@@ -157,7 +157,7 @@ function showMarks(suite, grade, rows, strange) {
     : [];
   const look = ({ scene, file }, words) =>
     file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, words) : words;
-  // The scene that shows a cause best comes first.
+  // The scene that shows a cause best is first.
   const causes = grade.causes
     .map(({ words, scenes }) => [words, scenes.map((scene) => rows.find((row) => row.scene === scene))])
     .filter(([, own]) => !own[0].isMissing);
@@ -182,7 +182,7 @@ function showMarks(suite, grade, rows, strange) {
         el("td", { class: "num", "data-label": "points" }, `${points} of ${of}`),
         el("td", { class: "words" }, accepted || isMissing ? "" : why),
       );
-    // What is wrong comes first, and what is right needs a look only if somebody asks.
+    // Wrong scenes come first; right ones are shown on request.
     const wrong = own.filter((row) => !row.accepted && !row.isMissing),
       missing = own.filter((row) => row.isMissing);
     const folded = (list, words) =>
@@ -250,7 +250,7 @@ function showMarks(suite, grade, rows, strange) {
   if (hadFocus) $("marks-again").focus();
 }
 
-// The whole report on one scene. It is this trace's alone: the next one is recognized.
+// Opens the full report on one scene. Only this trace uses the scene; the scene of the next trace is recognized.
 function lookAt(scene, file) {
   open("check");
   $("scene").value = "";
@@ -261,7 +261,7 @@ function lookAt(scene, file) {
   );
 }
 
-// Asks for the suite that is chosen.
+// Requests the chosen suite.
 function askSuite() {
   const { suite } = marks;
   return marks.oracle.ask(
@@ -272,7 +272,7 @@ function askSuite() {
   );
 }
 
-// A scene's XML: a dropped or a course's own one, or one of those inside.
+// Returns a scene's XML: that of a dropped scene, of a course's scene, or of an embedded one.
 async function xmlOf(scene) {
   const number = marks.suite?.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene) ?? -1;
   if (number >= 0) return marks.suite.xml[number];
@@ -280,7 +280,7 @@ async function xmlOf(scene) {
   return answer && answer.parts[0];
 }
 
-// A script with all scenes in it, which runs a program on each.
+// Saves a script that contains all scenes and runs a program on each.
 async function saveScript() {
   const begun = await askSuite();
   if (!begun) return;
@@ -305,7 +305,8 @@ run() {
 $("save-script").addEventListener("click", () =>
   saveScript().catch(({ message }) => ($("marks-said").textContent = message)),
 );
-// A wrong trace, and right ones of scenes beside its own. Its mistake is one of edges, so these have none.
+// A wrong trace, and right traces of scenes of the same group. The mistake is one of edges, so the right scenes have
+// none.
 $("example-all").addEventListener("click", async () => {
   const flawed = await marks.oracle.ask({ do: "example" });
   if (!flawed) return;

@@ -1,4 +1,4 @@
-// A scene is written: the strict reader's messages in place, and the reference's motion beside it.
+// Edits a scene, with the strict reader's messages at their places and the reference's motion next to it.
 const film = { oracle: new Oracle(), now: null, step: 0, plays: false, round: 0 };
 const SIZE = { width: 800, height: 500 };
 const STARTER = `<scene>
@@ -22,7 +22,7 @@ function tryScene(words, name) {
   $("source").value = words;
   changed();
 }
-// The smallest scenes of a report become choices.
+// The smallest scenes of a report become options of the list.
 async function tryFile(file) {
   if (!file) return;
   const words = await file.text();
@@ -36,7 +36,7 @@ async function tryFile(file) {
   tryScene(scenes[0], "small.xml");
 }
 
-// Marks lie behind the text, which is transparent: the same letters at the same places.
+// The marks are behind the text, in a transparent copy of it with the same letters at the same places.
 function mark(problems) {
   const source = bytesOf($("source").value),
     nodes = [];
@@ -57,7 +57,7 @@ async function changed() {
   const round = ++film.round;
   await new Promise((wait) => setTimeout(wait, 250));
   if (round !== film.round) return;
-  // What is still simulated is not wanted any more.
+  // Cancel the simulation in progress, because its result is outdated.
   if (film.oracle.isBusy) film.oracle.stop();
   $("try-said").textContent = "Reading the scene ...";
   const source = bytesOf($("source").value);
@@ -105,7 +105,7 @@ function told(value) {
   draw();
 }
 
-// Selects the place of a message.
+// Selects the text of a message.
 function show(from, to) {
   const source = bytesOf($("source").value);
   const [first, last] = [from, to].map((at) => text(source.slice(0, at)).length);
@@ -113,7 +113,7 @@ function show(from, to) {
   $("source").setSelectionRange(first, Math.max(last, first + 1));
 }
 
-// One picture at a time is asked for; the last wish counts.
+// Requests one picture at a time; of several pending requests, only the last is sent.
 async function draw() {
   $("step").value = film.step;
   $("at").textContent =

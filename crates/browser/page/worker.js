@@ -1,4 +1,4 @@
-// The worker: requests come one after the other, with the files that they may read.
+// The worker handles requests one after the other, each with the files that it may read.
 let files = [],
   ask = null,
   id = 0,

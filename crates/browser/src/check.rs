@@ -1,6 +1,6 @@
-//! `check`: the same reports as the command's.
+//! Answers `check` with the same reports as the command.
 use crate::{
-    dropped::{PageHost, ReadFault, ToldProgress, open},
+    dropped::{PageHost, PageProgress, ReadFault, open},
     parts::PageAnswer,
     scenes,
 };
@@ -21,7 +21,7 @@ use std::io::{Cursor, Read};
 /// A trace to be judged.
 #[derive(Debug, Deserialize)]
 pub(crate) struct CheckRequest {
-    /// The scene's name: `asset:Group/name` for an embedded scene, else its file's.
+    /// The scene's name: `asset:Group/name` for an embedded scene, otherwise that of its file.
     scene: String,
     /// The name of the trace's file.
     trace: String,
@@ -30,25 +30,26 @@ pub(crate) struct CheckRequest {
     file: u32,
     #[serde(default)]
     rules: Rules,
-    /// Whether the page is requested, and not the JSON alone.
+    /// Whether the HTML page is requested in addition to the JSON.
     #[serde(default)]
     html: bool,
 }
 
-/// Judges a trace: the second part of the answer is `check --format json`, the third `check --format html`.
+/// Judges a trace. The second part of the answer is the output of `check --format json`, the third that of `check
+/// --format html`.
 pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn PageHost) -> PageAnswer {
     let scene = read_scene(&request.scene, xml)?;
     let fault = ReadFault::new();
     let (mut trace, mut start) = (open(host, request.file, &fault), Vec::new());
-    // Bytes that can't be read are noticed below.
+    // Unreadable bytes are reported below.
     let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
-    let (mut told, mut wrong) = (ToldProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
+    let (mut told, mut wrong) = (PageProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
     let heard = &mut BothObservers(&mut told, &mut wrong);
     let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
     let outcome = &examined.outcome;
-    // A search for the mistake may take as long as judging.
+    // Report judging as complete, because the search for the mistake, which follows, may take as long.
     host.progress(scene.steps(), scene.steps());
     if let Some(why) = no_verdict(outcome, &request.scene) {
         return Err(why);

@@ -1,4 +1,4 @@
-//! A course's own suite on the page.
+//! The suite of a course on the page.
 use fosssim_grading::{
     SceneTask,
     config::Visibility,
@@ -9,20 +9,20 @@ use fosssim_report::page::Audience;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// A suite and its own scenes, as if they had been dropped.
+/// A suite and its own scenes, in the form of dropped files.
 #[derive(Debug)]
 pub struct CourseSuite(Value);
 
 impl CourseSuite {
-    /// Returns the groups of a plan that readers of the page may see; of the others nothing is in it.
+    /// Returns the groups of a plan that readers of the page may see, without any data of the other groups.
     ///
     /// # Errors
-    /// When there is no such group, or when a name can't be written into a suite.
+    /// If there is no visible group, or if a name cannot be written into a suite.
     pub fn for_plan(plan: &Plan, reader: Audience) -> Result<Self, String> {
         let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
         let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();
         if groups.is_empty() {
-            return Err("the suite hides all of its groups from the readers of the page".to_owned());
+            return Err("the suite hides all its groups from readers of the page".to_owned());
         }
         let scenes = || groups.iter().flat_map(|group| &group.scenes);
         let own: Vec<&SceneTask> = scenes().filter(|task| !is_inside(task)).collect();
@@ -45,23 +45,23 @@ impl CourseSuite {
         Ok(Self(json!({ "name": plan.name, "suite": text, "scenes": scenes, "isForStudents": is_for_students })))
     }
 
-    /// Returns the course as it is in a data block: nothing in it ends the element.
+    /// Returns the course for a data block of a page, escaped so that it cannot end the element.
     pub(crate) fn data(&self) -> String {
         self.0.to_string().replace('<', "\\u003c")
     }
 }
 
-/// Returns whether every page has this scene inside.
+/// Returns whether every page embeds the scene.
 fn is_inside(task: &SceneTask) -> bool {
     library::scene(&task.name).is_some_and(|xml| xml == task.xml)
 }
 
-/// Returns the file of a scene, next to the suite.
+/// Returns the file name of a scene, next to the suite.
 fn file(task: &SceneTask) -> String {
     format!("{}.xml", task.name)
 }
 
-/// Renders the suite without what grading alone needs.
+/// Returns the text of the suite, without settings that only grading needs.
 fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
     // A JSON string is also a TOML string.
     let string = |text: &str| Value::from(text).to_string();

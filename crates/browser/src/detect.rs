@@ -1,9 +1,9 @@
-//! `detect`: one pair in detail.
+//! Answers `detect` for one pair.
 use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{printed::general, vector::Vec2};
-use fosssim_render::{detection, plot::Embedding};
+use fosssim_render::{detection, plot::PlotTarget};
 use fosssim_report::{detect::Detect, style::Style};
 use serde::Deserialize;
 use serde_json::json;
@@ -52,19 +52,19 @@ impl PairRequest {
     }
 }
 
-/// Examines a pair. The parts behind the first are those of `detect --format text`, `json` and `svg`, and the picture
-/// once more for a page that has the style of plots.
+/// Examines a pair. The parts after the first are the outputs of `detect --format text`, `json` and `svg`, followed by
+/// the picture for a page with the style sheet of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.motion()?)
-        .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;
+        .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;
     let report = Detect { study: &study, place: None };
     let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();
     let value = json!({ "decision": report.decision(general), "collides": study.answer.decision.collides() });
     let parts = vec![
         report.text(Style::Plain).into_bytes(),
         report.json().into_bytes(),
-        picture(Embedding::Alone),
-        picture(Embedding::Inline),
+        picture(PlotTarget::File),
+        picture(PlotTarget::Page),
     ];
     Ok((value, parts))
 }

@@ -1,13 +1,13 @@
-//! The page: one HTML file with the module inside, which loads nothing else.
+//! The page, one HTML file with the embedded module, which loads nothing else.
 //!
-//! Its policy allows by their digests its script, its style and those of the reports that it shows. It also allows the
-//! module, and a worker that the page makes itself; no address is among the sources.
+//! Its policy allows its script, its style and those of the embedded reports by their digests. It also allows the
+//! module, and a worker created by the page; no address is among the sources.
 use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use fosssim_report::page::{ELEMENTS, digest, framed_digests, style};
 use miniz_oxide::deflate::compress_to_vec;
 
-/// The page's script, in the order in which its parts need each other.
+/// The parts of the page's script, in the order of their dependencies.
 const SCRIPT: [&str; 6] = [
     ELEMENTS,
     include_str!("../page/shell.js"),
@@ -17,13 +17,13 @@ const SCRIPT: [&str; 6] = [
     include_str!("../page/pair.js"),
 ];
 
-/// The worker's.
+/// The parts of the worker's script.
 const WORKER: [&str; 2] = [include_str!("../page/engine.js"), include_str!("../page/worker.js")];
 
 const BODY: &str = include_str!("../page/body.html");
 const STYLE: &str = include_str!("../page/page.css");
 
-/// Renders the page around the module (WebAssembly, not packed), with the suite of a course if it is one's.
+/// Returns the page with the module (WebAssembly, not compressed), and with the suite of a course if one is given.
 #[must_use]
 pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT));
@@ -51,8 +51,8 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     )
 }
 
-/// Returns a script without what only its authors need: indentation and lines that are comments. Except in scenes, no
-/// text in it spans several lines.
+/// Returns a script without indentation and comment lines, which only its authors need. Except in scenes, no text in it
+/// spans several lines.
 fn lines(parts: &[&str]) -> String {
     let lines = parts.iter().flat_map(|part| part.lines());
     lines

@@ -1,4 +1,4 @@
-//! Files that were dropped on the page, read piece by piece; packed traces are unpacked on the way.
+//! Dropped files, which are read piece by piece; compressed traces are decompressed.
 use fosssim_judge::replay::{Progress, Remark};
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::{
@@ -7,48 +7,48 @@ use std::{
     sync::OnceLock,
 };
 
-/// The number of bytes that the browser is asked for in one call: each call takes some 0.1 ms.
+/// The number of bytes that are requested from the browser in one call; each call takes about 0.1 ms.
 const PIECE: usize = 1 << 20;
 
 /// The first bytes of every zstd frame.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// The reason why a file can't be read to its end, and what to do.
+/// The reason why a file cannot be read to its end, and the remedy.
 pub(crate) type ReadFault = OnceLock<&'static str>;
 
-/// The functions of the page that requests need.
+/// The functions of the page that requests use.
 pub trait PageHost: Sync {
-    /// Reads bytes of the dropped file of this number from an offset on. Returns how many; 0 at the file's end, `None`
-    /// when it can't be read.
+    /// Reads bytes of a dropped file from an offset on. Returns the number of bytes; 0 at the end of the file, `None`
+    /// if it cannot be read.
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize>;
 
-    /// Reports how far a request is: how many steps of all are done.
+    /// Reports the progress of a request, as the number of completed steps and of all steps.
     fn progress(&self, done: u32, all: u32);
 }
 
-/// Reports the progress of judging.
-pub(crate) struct ToldProgress<'a> {
+/// Forwards the progress of judging to the page.
+pub(crate) struct PageProgress<'a> {
     pub(crate) host: &'a dyn PageHost,
     pub(crate) all: u32,
 }
 
-impl Progress for ToldProgress<'_> {
+impl Progress for PageProgress<'_> {
     fn step_judged(&mut self, step: u32, _: &[Remark]) {
         self.host.progress(step, self.all);
     }
 }
 
-/// Returns a dropped trace from its beginning, unpacked where it is a zstd file.
+/// Returns a reader of a dropped trace, decompressed if it is a zstd file.
 pub(crate) fn open<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
     let mut bytes = BufReader::with_capacity(PIECE, DroppedFile { host, file, offset: 0, fault });
-    // A file that can't be read is noticed when it is read.
+    // An unreadable file is reported when it is read.
     match bytes.fill_buf() {
         Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdContent { frames: Frames::Next(bytes), fault }),
         _ => Box::new(bytes),
     }
 }
 
-/// A dropped file from its beginning.
+/// A sequential reader of a dropped file.
 struct DroppedFile<'a> {
     host: &'a dyn PageHost,
     file: u32,
@@ -59,7 +59,7 @@ struct DroppedFile<'a> {
 impl Read for DroppedFile<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         let Some(count) = self.host.read(self.file, self.offset, into) else {
-            let _ = self.fault.set("it has changed or is gone; drop it again");
+            let _ = self.fault.set("it was changed or removed; drop it again");
             return Err(io::Error::other("the browser can no longer read the file"));
         };
         self.offset += count as u64;
@@ -67,7 +67,7 @@ impl Read for DroppedFile<'_> {
     }
 }
 
-/// The content of a zstd file. A damaged copy proves nothing about the trace.
+/// The decompressed content of a zstd file. A damaged copy proves nothing about the trace.
 struct ZstdContent<'a> {
     frames: Frames<BufReader<DroppedFile<'a>>>,
     fault: &'a ReadFault,
@@ -75,18 +75,18 @@ struct ZstdContent<'a> {
 
 /// The frames of a zstd file, one after the other.
 enum Frames<R: Read> {
-    /// Before the next frame.
+    /// The position before the next frame.
     Next(R),
-    /// In one.
+    /// The position within a frame.
     Within(Box<StreamingDecoder<R, FrameDecoder>>),
-    /// Behind the last byte.
+    /// The position after the last byte.
     End,
 }
 
 impl Read for ZstdContent<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         self.frames.read(into).inspect_err(|_| {
-            // A missing file has been reported already, and is the better explanation.
+            // A missing file has already been reported, and is the better explanation.
             let _ = self.fault.set("the zstd data is cut short or damaged; copy it again");
         })
     }
@@ -112,7 +112,7 @@ impl<R: BufRead> Frames<R> {
                     let (bytes, decoder) = frame.into_parts();
                     let (told, made) = (decoder.get_checksum_from_data(), decoder.get_calculated_checksum());
                     if told.is_some() && told != made {
-                        return Err(io::Error::other("the content is not what was packed"));
+                        return Err(io::Error::other("the content differs from the compressed data; copy it again"));
                     }
                     Self::Next(bytes)
                 }
@@ -156,7 +156,7 @@ mod tests {
         assert_eq!(content(trace.clone()), (trace.clone(), None));
         let packed = pack(&trace);
         assert_eq!(content(packed.clone()), (trace.clone(), None));
-        // Two frames are one content.
+        // Two frames form one content.
         let (one, other) = trace.split_at(1000);
         assert_eq!(content([pack(one), pack(other)].concat()), (trace, None));
         let damaged = |bytes: Vec<u8>| content(bytes).1.expect("it is told").contains("cut short or damaged");

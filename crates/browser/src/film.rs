@@ -1,4 +1,4 @@
-//! A scene that is being written: the problems that its strict reader finds, and the reference's motion.
+//! A scene in the editor: the problems found by the strict reader, and the reference's motion.
 use crate::{dropped::PageHost, parts::PageAnswer};
 use fosssim_model::{
     scene::{self, LoadedScene, Problem, Scene, Severity},
@@ -15,22 +15,22 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
-/// The most numbers of a motion that are kept; the largest course scene has 70,444.
-const MOST_NUMBERS: usize = 1 << 24;
+/// The maximum number of numbers that are kept of a motion; the largest course scene has 70,444.
+const MAX_NUMBERS: usize = 1 << 24;
 
-/// The longest trace that is made in one go, in bytes.
-const LONGEST_TRACE: usize = 1 << 30;
+/// The maximum size of a trace that is created at once, in bytes.
+const MAX_TRACE_BYTES: usize = 1 << 30;
 
-/// Films of more pictures leave some out, as those of the command line do.
-const LONG_FILM: u32 = 1500;
+/// The number of pictures above which a film omits some, like films of the command line.
+const MAX_PICTURES: u32 = 1500;
 
-/// Pictures per second of a film.
-const RATE: u16 = 25;
+/// The pictures per second of a film.
+const PICTURES_PER_SECOND: u16 = 25;
 
 /// The number of steps between two reports of progress.
-const NEWS: u32 = 64;
+const STEPS_PER_REPORT: u32 = 64;
 
-/// A picture of the motion.
+/// A request for a picture of the motion.
 #[derive(Debug, Deserialize)]
 pub(crate) struct PictureRequest {
     step: u32,
@@ -43,7 +43,7 @@ pub(crate) struct PictureRequest {
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum PictureForm {
-    /// Four bytes a pixel, for a canvas.
+    /// Four bytes per pixel, for a canvas.
     Pixels,
     Png,
     Svg,
@@ -60,16 +60,16 @@ pub(crate) struct FilmKind {
 #[derive(Debug)]
 pub(crate) struct Film {
     scene: Scene,
-    /// Positions after each step, the start first.
+    /// The positions after each step, with the start first.
     positions: Vec<f64>,
     steps: u32,
     extent: Extent,
-    /// The painter, the step of its next picture, and whether pictures are named: particles leave paths, so pictures
-    /// follow each other.
+    /// The painter, the step of its next picture, and whether pictures have labels. Particles have trails, so pictures
+    /// must be painted in order.
     painter: Option<(Painter, u32, bool)>,
 }
 
-/// Reads a scene and, if it is right, simulates it.
+/// Reads a scene and, if it has no errors, simulates it.
 pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
     let (scene, problems, more) = match scene::read(name, xml) {
         Ok(LoadedScene { scene, warnings, .. }) => (Some(scene), warnings, 0),
@@ -102,14 +102,14 @@ fn view(problem: &Problem) -> Value {
 }
 
 impl Film {
-    /// Returns the motion, and why it ends before the scene does.
+    /// Returns the motion, and the reason if it ends before the scene does.
     fn for_scene(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
         let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
         let mut positions = simulation.state().positions.clone();
         let start = Extent::for_scene(&scene, &positions);
         let (mut extent, mut steps, mut stopped) = (start, 0, None);
         for step in 1..=scene.steps() {
-            if positions.len() + 2 * scene.particles.len() > MOST_NUMBERS {
+            if positions.len() + 2 * scene.particles.len() > MAX_NUMBERS {
                 stopped = Some(format!("it is too long to be shown from step {step} on"));
                 break;
             }
@@ -120,7 +120,7 @@ impl Film {
             extent.add(&scene, &simulation.state().positions);
             positions.extend(&simulation.state().positions);
             steps = step;
-            if step % NEWS == 0 {
+            if step % STEPS_PER_REPORT == 0 {
                 host.progress(step, scene.steps());
             }
         }
@@ -137,11 +137,11 @@ impl Film {
         Painter::new(&self.scene, &self.extent, PictureOptions { size, label })
     }
 
-    /// Returns one picture, as the only part behind the first.
+    /// Returns one picture, as the only part after the first.
     pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
-        // The page itself says step and time.
+        // The page itself shows the step and the time.
         let label = !matches!(asked.form, PictureForm::Pixels);
         let follows =
             |(painter, next, has): &(Painter, u32, bool)| *next <= step && painter.size() == size && *has == label;
@@ -173,11 +173,11 @@ impl Film {
         Ok((json!({ "step": step }), vec![bytes]))
     }
 
-    /// Returns all pictures as a film, as `render` makes it.
+    /// Returns all pictures as a film, like `render`.
     pub(crate) fn film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
-        let rate = Rate::new(RATE).ok_or("no such rate")?;
-        let every = self.steps.div_ceil(LONG_FILM).max(1);
+        let rate = Rate::new(PICTURES_PER_SECOND).ok_or("no such rate")?;
+        let every = self.steps.div_ceil(MAX_PICTURES).max(1);
         let pictures = self.steps / every + 1;
         let (mut painter, mut raster, mut bytes) = (self.painter(size, true), Raster::new(size), Vec::new());
         let (background, colors) = (painter.background(), painter.colors());
@@ -198,19 +198,19 @@ impl Film {
         Ok((json!({ "pictures": pictures }), vec![bytes]))
     }
 
-    /// Returns the reference's trace, byte for byte as `simulate` writes it.
+    /// Returns the reference's trace, byte for byte the output of `simulate`.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
         let kept = TraceRoom(Vec::new());
         let mut recorder = Recorder::start(kept, Layout::for_scene(&self.scene), simulation.state());
         for step in 1..=self.scene.steps() {
             if let Err(error) = simulation.step(&mut recorder) {
-                return Err(format!("there is no trace: {}", no_result(&error)));
+                return Err(format!("the trace cannot be written: {}", no_result(&error)));
             }
             if recorder.has_failed() {
                 break;
             }
-            if step % NEWS == 0 {
+            if step % STEPS_PER_REPORT == 0 {
                 host.progress(step, self.scene.steps());
             }
         }
@@ -221,12 +221,12 @@ impl Film {
     }
 }
 
-/// Memory for one trace.
+/// A memory buffer for one trace.
 struct TraceRoom(Vec<u8>);
 
 impl Write for TraceRoom {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        if self.0.len() + bytes.len() > LONGEST_TRACE {
+        if self.0.len() + bytes.len() > MAX_TRACE_BYTES {
             return Err(io::Error::other("too long"));
         }
         self.0.extend(bytes);

@@ -1,10 +1,10 @@
-//! The program for browsers: `check`, `simulate`, `detect` and `grade --traces` of the command line, called by messages
-//! instead of arguments.
+//! The program for browsers, which runs `check`, `simulate`, `detect` and `grade --traces` of the command line on
+//! messages instead of arguments.
 //!
 //! A [`PageSession`] answers one request after the other. A request is a list of byte strings, of which the first is
-//! JSON, and so is an answer ([`parts`]). What the page dropped is not in the request: it is read piece by piece from
-//! the [`PageHost`], so that a trace of any size can be judged. Compiled to WebAssembly it is the module of the page
-//! (`document`); compiled natively, tests compare its answers with the program's.
+//! JSON; an answer has the same form ([`parts`]). Dropped files are not in the request; they are read piece by piece
+//! from the [`PageHost`], so a trace of any size can be judged. Compiled to WebAssembly, this crate is the module of
+//! the page (`document`); compiled natively, tests compare its answers with the program's.
 #![deny(unsafe_code)]
 
 mod check;

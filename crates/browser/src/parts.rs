@@ -1,4 +1,5 @@
-//! Lists of byte strings as one byte string: each behind its length, four bytes with the lowest first.
+//! Encodes lists of byte strings as one byte string. Each string follows its length, which is four bytes with the
+//! lowest first.
 use serde_json::Value;
 
 /// An answer: a value, and the byte strings that belong to it.
@@ -7,7 +8,7 @@ pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 /// Returns a list as one byte string.
 ///
 /// # Panics
-/// When a part has 4 GiB or more, which memory here can't hold.
+/// If a part has 4 GiB or more, which the memory here cannot hold.
 #[must_use]
 pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(parts.iter().map(|part| part.len() + 4).sum());
@@ -19,7 +20,7 @@ pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the list that was joined; `None` when the bytes are cut.
+/// Returns the parts of a joined list; `None` if the bytes are truncated.
 #[must_use]
 pub fn split(mut bytes: &[u8]) -> Option<Vec<&[u8]>> {
     let mut parts = Vec::new();

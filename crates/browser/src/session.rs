@@ -1,4 +1,4 @@
-//! One request after the other.
+//! Answers one request after the other.
 use crate::{
     check, detect,
     dropped::PageHost,
@@ -11,44 +11,45 @@ use fosssim_grading::{library, plan};
 use serde::Deserialize;
 use serde_json::json;
 
-/// The requests of the page. The parts behind the first are named with each request.
+/// A request of the page. The parts after the first are described for each request.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 enum PageRequest {
-    /// The scenes and suites that are inside.
+    /// Lists the embedded scenes and suites.
     Scenes,
-    /// The XML of an embedded scene.
+    /// Returns the XML of an embedded scene.
     Scene { name: String },
-    /// A wrong trace to examine, with its scene.
+    /// Returns a wrong trace as an example, with its scene.
     Example,
-    /// Reads the scene of the second part: whether its strict reader takes it.
+    /// Reads the scene in the second part, and returns whether the strict reader accepts it.
     Read { name: String },
-    /// The scenes inside with whose start the dropped trace begins, and the kind of file that it seems to be instead.
+    /// Finds the embedded scenes whose start begins the dropped trace, or otherwise the kind of file that it seems to
+    /// be.
     Recognize {
         #[serde(default)]
         file: u32,
     },
     /// Judges a dropped trace. The second part is the scene's XML, unless the scene is embedded.
     Check(check::CheckRequest),
-    /// Reads the scene of the second part, and simulates it if it is right.
+    /// Reads the scene in the second part, and simulates it if it has no errors.
     Simulate { scene: String },
-    /// The trace of the scene that was simulated last.
+    /// Returns the trace of the last simulated scene.
     Trace,
-    /// A picture of its motion.
+    /// Returns a picture of the last simulated motion.
     Picture(film::PictureRequest),
-    /// The scene's motion as a film.
+    /// Returns the last simulated motion as a film.
     Film(film::FilmKind),
     /// Examines one pair.
     Detect(detect::PairRequest),
-    /// Begins to grade a submission's traces. Without a name the second part is the suite, dropped scenes follow.
+    /// Begins to grade a submission's traces. Without a name the second part is the suite, followed by dropped scenes.
     Suite(SuiteRequest),
     /// Judges one of the suite's scenes.
     Judge(SceneRequest),
-    /// Puts the results together under this name.
+    /// Combines the results under a name.
     Grade { name: String },
 }
 
-/// The values between requests: the motion of the scene that was simulated last, the submission that is being graded.
+/// The state between requests: the motion of the last simulated scene, and the submission that is being graded.
 #[derive(Debug, Default)]
 pub struct PageSession {
     film: Option<Film>,
@@ -56,7 +57,7 @@ pub struct PageSession {
 }
 
 impl PageSession {
-    /// Answers a request. The first part of an answer is JSON: the requested result, or `{"error": "words"}`.
+    /// Answers a request. The first part of an answer is JSON: the requested result, or `{"error": "message"}`.
     #[must_use]
     pub fn answer(&mut self, request: &[u8], host: &dyn PageHost) -> Vec<u8> {
         let (value, bytes) =
@@ -67,7 +68,7 @@ impl PageSession {
     }
 
     fn answer_parsed(&mut self, request: &[u8], host: &dyn PageHost) -> PageAnswer {
-        let parts = parts::split(request).ok_or("the request is cut")?;
+        let parts = parts::split(request).ok_or("the request is truncated")?;
         let (first, rest) = parts.split_first().ok_or("the request is empty")?;
         let request = serde_json::from_slice(first).map_err(|error| format!("the request can't be read: {error}"))?;
         let xml = rest.first().copied();

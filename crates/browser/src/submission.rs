@@ -1,6 +1,6 @@
-//! A submission's traces: points by a suite, as `grade --traces` gives them.
+//! The traces of a submission, with points by a suite, as in `grade --traces`.
 use crate::{
-    dropped::{PageHost, ReadFault, ToldProgress, open},
+    dropped::{PageHost, PageProgress, ReadFault, open},
     parts::PageAnswer,
 };
 use fosssim_grading::{
@@ -18,8 +18,8 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{Read, empty};
 
-/// A suite with which a submission is going to be graded. Scenes that the suite names by files were dropped with it:
-/// their names, as the suite may write them, in the order of the parts behind the suite's text.
+/// A suite for grading a submission. Scenes that the suite names by files were dropped with it. Their names, as the
+/// suite may write them, are in the order of the parts after the suite's text.
 #[derive(Debug, Deserialize)]
 pub(crate) struct SuiteRequest {
     /// The name of an embedded suite; `None` if its text was dropped.
@@ -27,17 +27,18 @@ pub(crate) struct SuiteRequest {
     /// The names of dropped scenes.
     #[serde(default)]
     scenes: Vec<String>,
-    /// Whether its hints decide what is shown, as in `grade --for student`: the course made the page so.
+    /// Whether the suite's hints limit the output, as in `grade --for student`; the course has created the page for
+    /// students.
     #[serde(default)]
     is_for_students: bool,
 }
 
-/// One scene to be judged.
+/// A request to judge one scene.
 #[derive(Debug, Deserialize)]
 pub(crate) struct SceneRequest {
-    /// The scene's place among the suite's scenes.
+    /// The index of the scene among the suite's scenes.
     number: usize,
-    /// Whether there is a trace, which is the dropped file 0.
+    /// Whether there is a trace, which is dropped file 0.
     has_trace: bool,
 }
 
@@ -50,7 +51,7 @@ pub(crate) struct DroppedSubmission {
 }
 
 impl DroppedSubmission {
-    /// Reads the suite: its groups with the names of their scenes, in order.
+    /// Reads the suite, and returns its groups with the names of their scenes, in order.
     pub(crate) fn begin(asked: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
         let name = asked.suite.clone().unwrap_or_else(plan::default_name);
         let (text, dropped) = match (&asked.suite, parts.split_first()) {
@@ -84,7 +85,7 @@ impl DroppedSubmission {
             true => Box::new(open(host, 0, &fault).take(self.plan.limits.trace)),
             false => Box::new(empty()),
         };
-        let mut heard = ToldProgress { host, all: task.scene.steps() };
+        let mut heard = PageProgress { host, all: task.scene.steps() };
         let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut heard);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));
@@ -104,7 +105,7 @@ impl DroppedSubmission {
         Ok((value, Vec::new()))
     }
 
-    /// Returns the grade of all scenes: the second part of the answer is `grade --traces --format json`.
+    /// Returns the grade of all scenes. The second part of the answer is the output of `grade --traces --format json`.
     pub(crate) fn end(&self, name: &str) -> PageAnswer {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;

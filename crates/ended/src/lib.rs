@@ -1,4 +1,4 @@
-//! How the run of a program ended, as a value: the sandbox makes it, grades store it and reports put it into words.
+//! The way the run of a program ended, as a value. The sandbox creates it, grades store it, and reports describe it.
 //!
 //! ```
 //! use fosssim_ended::RunEnd;
@@ -12,38 +12,38 @@
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
-/// The way a run ended. Every variant but [`RunEnd::Exited`] and [`RunEnd::Signalled`] is a decision of the sandbox.
+/// The way a run ended. Every variant except [`RunEnd::Exited`] and [`RunEnd::Signalled`] is a decision of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RunEnd {
     /// The program ended by itself with this exit code.
     Exited(i32),
-    /// The program was ended by this signal, of its own making (a crash, an abort).
+    /// The program was ended by this signal, which it caused itself (a crash, an abort).
     Signalled(i32),
     /// The program used up its processor time.
     CpuLimit,
     /// The program used up its time on the clock.
     WallLimit,
-    /// The program held more memory than allowed, or stopped because memory was denied.
+    /// The program used more memory than allowed, or stopped because memory was denied.
     MemoryLimit,
     /// The program's trace is longer than allowed.
     TraceLimit,
     /// The program had more threads and processes than allowed.
     ProcessLimit,
-    /// The program put more bytes or files into its working folder than allowed.
+    /// The program wrote more bytes or files into its working folder than allowed.
     FolderLimit,
     /// The program used a system call that no submission needs.
     Violation {
-        /// The call, by its usual name (`ptrace`), or words when the name is not known.
+        /// The call's usual name (`ptrace`), or a description if the name is unknown.
         call: String,
     },
-    /// The program never ran.
+    /// The program could not be started.
     CouldNotStart(StartProblem),
-    /// The grader stopped it.
+    /// The grader stopped the run.
     Cancelled,
 }
 
 impl RunEnd {
-    /// Returns the variant's name for machines and for the attack suite: `exited`, `cpu`, `violation` and so on.
+    /// Returns the variant's name for machines and for the attack suite, such as `exited`, `cpu` or `violation`.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -80,15 +80,15 @@ impl fmt::Display for RunEnd {
     }
 }
 
-/// Returns the usual name and meaning of a signal that ends programs, by its number in Linux.
+/// Returns the usual name and meaning of a signal that ends programs, given its number in Linux.
 #[must_use]
 pub fn signal_name(signal: i32) -> &'static str {
     match signal {
-        11 => "SIGSEGV: it used memory that is not its own",
+        11 => "SIGSEGV: it accessed memory that does not belong to it",
         6 => "SIGABRT: it aborted, by a failed assertion or an uncaught exception",
         8 => "SIGFPE: an integer division by zero",
         4 => "SIGILL: an instruction that this processor does not have",
-        7 => "SIGBUS: it used memory that does not exist",
+        7 => "SIGBUS: it accessed memory that does not exist",
         13 => "SIGPIPE: it wrote to a pipe without a reader",
         5 => "SIGTRAP: a breakpoint",
         15 => "SIGTERM: it ended itself",
@@ -103,37 +103,37 @@ pub fn signal_name(signal: i32) -> &'static str {
     }
 }
 
-/// The reason why a program never ran. The text names the fault and the remedy.
+/// The reason why a program could not be started. The text describes the fault and the remedy.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum StartProblem {
-    /// There is no such file.
-    #[error("there is no such program; check the path and build the program first")]
+    /// The file does not exist.
+    #[error("the program does not exist; check the path and build the program first")]
     NotFound,
-    /// The path names a folder.
-    #[error("this is a folder, not a program; name the program inside it")]
+    /// The path is that of a folder.
+    #[error("this is a folder, not a program; give the path of the program inside it")]
     IsFolder,
-    /// The path names something that is neither a file nor a folder.
+    /// The path is neither a file nor a folder.
     #[error("this is not a regular file")]
     NotAFile,
     /// The file has no execute permission.
     #[error("the file is not executable; if it is the program, run chmod +x on it")]
     NotExecutable,
-    /// The user the program runs as may not reach the file.
+    /// The user of the run has no access to the file.
     #[error("permission denied; put the program where every user may read and execute it")]
     NotPermitted,
     /// The file is neither an ELF program nor a script.
-    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload what the linker wrote")]
+    #[error("the file is not a program: neither ELF nor a script that begins with #!; upload the linker's output")]
     NotAProgram,
-    /// An ELF file that is not a program, for example an object file or a core dump.
-    #[error("the file is {what}, not a linked program; upload what the linker wrote")]
+    /// The file is an ELF file but not a program, for example an object file or a core dump.
+    #[error("the file is {what}, not a linked program; upload the linker's output")]
     NotLinked {
-        /// The kind of thing found instead.
+        /// The kind of file that was found instead.
         what: Cow<'static, str>,
     },
-    /// A 32-bit program.
+    /// The file is a 32-bit program.
     #[error("this is a 32-bit program; build it for 64 bits (without -m32)")]
     ThirtyTwoBit,
-    /// A program for another processor.
+    /// The file is a program for another processor.
     #[error("this program was built for {machine}, but this machine is {here}; build it on the grading platform")]
     WrongMachine {
         /// The machine for which it was built.
@@ -141,30 +141,30 @@ pub enum StartProblem {
         /// The kind of this machine.
         here: Cow<'static, str>,
     },
-    /// A program for another system.
-    #[error("this program was built for {system}, but programs run on Linux here; build it on the grading platform")]
+    /// The file is a program for another operating system.
+    #[error("this program was built for {system}, but Linux is needed; build it on the grading platform")]
     WrongSystem {
-        /// The system for which it was built.
+        /// The operating system for which it was built.
         system: Cow<'static, str>,
     },
     /// The program names a dynamic loader that this system does not have.
     #[error("the program needs a dynamic loader that is not on this machine; build it on the grading platform")]
     MissingLoader {},
-    /// A shared library is missing.
+    /// The program needs a shared library that is missing.
     #[error("the shared library {library} is missing; install it, or link it statically")]
     MissingLibrary {
-        /// The library's file name, as the loader printed it.
+        /// The library's file name, as printed by the loader.
         library: String,
     },
-    /// A script whose `#!` line is empty.
+    /// The file is a script whose `#!` line is empty.
     #[error("the script's first line names no interpreter; it must look like #!/bin/sh")]
     NoInterpreter,
-    /// A script whose interpreter is missing.
+    /// The file is a script whose interpreter is missing.
     #[error("the script's interpreter {interpreter} is not on this machine{hint}")]
     MissingInterpreter {
-        /// The interpreter's path.
+        /// The path of the interpreter.
         interpreter: String,
-        /// Advice, or nothing.
+        /// An advice, or an empty text.
         hint: Cow<'static, str>,
     },
     /// The interpreter is not part of the system.
@@ -173,7 +173,7 @@ pub enum StartProblem {
          begin a script with #!/usr/bin/env NAME or #!/bin/sh"
     )]
     NotTheSystems {
-        /// The path that the program names.
+        /// The path of the interpreter that the program names.
         path: String,
     },
     /// The program was built with a sanitizer, and such programs were not allowed.
@@ -188,10 +188,10 @@ pub enum StartProblem {
     /// Another process has the file open for writing.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
     Busy,
-    /// The program wanted a window.
+    /// The program tried to open a window.
     #[error("the program needs a display; run it without one: pass -d 0")]
     NeedsDisplay,
-    /// Another answer of the kernel.
+    /// The kernel rejected the program for another reason.
     #[error("the system refused to execute it: {0}")]
     Refused(String),
 }

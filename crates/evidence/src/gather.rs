@@ -1,6 +1,6 @@
-//! Reads a trace once more, together with the reference.
+//! Reads a trace again, together with the reference.
 use crate::{
-    inspected_step::{InspectedStep, Inspector, WantedCalls, go_on_from},
+    inspected_step::{InspectedStep, Inspector, WantedCalls, continue_from},
     rulings::StepRuling,
     track::{Track, Window},
 };
@@ -12,28 +12,28 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// The greatest number of steps with details, and of numbers in their expected states; large scenes have fewer steps.
-const CLOSE_UPS: usize = 12;
+/// The maximum number of steps with details, and of numbers in their expected states; large scenes have fewer steps.
+const MAX_INSPECTED_STEPS: usize = 12;
 const NUMBERS: usize = 40_000;
 
-/// A motion counts as another one than the reference's where a coordinate is further off than this, in scene units.
+/// The distance of a coordinate, in scene units, above which a motion differs from the reference's.
 const APART: f64 = 1e-10;
 
 /// The class of a step, for the strip over all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepClass {
-    /// Right, and where the reference is.
+    /// The step is right, and its end agrees with the reference's own run.
     Right,
-    /// Wrong by itself.
+    /// The step itself is wrong.
     Wrong,
-    /// Right by itself, from a state that an earlier wrong step has led to.
+    /// The step is right, but starts from a state that an earlier wrong step has caused.
     Inherited,
-    /// Not judged, or in a damaged record, which proves nothing.
+    /// The step was not judged, or is in a damaged record, which proves nothing.
     Unknown,
 }
 
 impl StepClass {
-    /// Returns the letter in a strip.
+    /// Returns the letter of the class in a strip.
     #[must_use]
     pub const fn letter(self) -> char {
         match self {
@@ -45,35 +45,36 @@ impl StepClass {
     }
 }
 
-/// One step.
+/// The measurements of one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Step {
-    /// The step's class.
+    /// The class of the step.
     pub class: StepClass,
-    /// Largest distance of a position coordinate from where the reference ends from the trace's own state; NaN where
-    /// one of them is no number.
+    /// The largest distance of a position coordinate from the end of a reference step that starts from the trace's own
+    /// state; NaN if one of them is NaN.
     pub position: f64,
-    /// The difference of velocities.
+    /// The largest distance of velocities, measured in the same way.
     pub velocity: f64,
-    /// Detection passes of the reference.
+    /// The number of the reference's detection passes.
     pub expected_passes: u32,
-    /// Detection passes that the trace's number of polynomials makes; `None` if it is no whole number of passes.
+    /// The number of detection passes according to the trace's number of polynomials; `None` if that is not a whole
+    /// number of passes.
     pub actual_passes: Option<u32>,
 }
 
-/// A place to show in detail: a step, and there a pair in a pass, or in all passes in which it collides.
+/// A place to show in detail: a step, with a pair in one pass, or in all passes in which it collides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Focus {
     /// The step, from 1.
     pub step: u32,
-    /// The pass.
+    /// The detection pass, if the fault is in one.
     pub pass: Option<Pass>,
-    /// The pair.
+    /// The pair, if the fault is about one.
     pub pair: Option<Pair>,
 }
 
 impl Focus {
-    /// Returns the findings of both books, the official one's first.
+    /// Returns the places of the findings of both rule books, with the official one's first.
     #[must_use]
     pub fn from_outcome(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
@@ -90,24 +91,24 @@ impl From<&Finding> for Focus {
 /// The data that a viewer shows of one trace.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Evidence {
-    /// The trace's shape.
+    /// The layout of the trace.
     pub layout: Layout,
-    /// Which records the motions hold.
+    /// The range of records in the motions.
     pub window: Window,
     /// The reference's own motion from the scene's start.
     pub reference: Track,
     /// The trace's motion.
     pub submission: Track,
-    /// All steps that trace and reference have.
+    /// The measurements of all steps that both trace and reference have.
     pub steps: Vec<Step>,
-    /// The steps shown in detail, in their order.
+    /// The steps shown in detail, in order.
     pub inspected: Vec<InspectedStep>,
 }
 
-/// Reads a trace: `rulings` are the judge's in the order of the steps, `fair` selects the book that decides, and
+/// Reads a trace. `rulings` are the judge's, in the order of the steps; `fair` selects the rule book that decides;
 /// `focus` names the places of findings, the most important first.
 ///
-/// A trace that can't be read to its end gives evidence up to that place.
+/// If a trace cannot be read to its end, the evidence covers the readable part.
 pub fn gather(
     scene: &Scene,
     trace: &mut dyn Read,
@@ -155,13 +156,13 @@ pub fn gather(
     gathering.evidence
 }
 
-/// Returns the calls of a step to show in detail.
+/// Returns the calls of a step that are shown in detail.
 fn wanted_calls(focus: &[Focus], step: u32) -> Vec<(WantedCalls, Pair)> {
     let of_step = focus.iter().filter(|focus| focus.step == step);
     of_step.filter_map(|focus| Some((focus.pass.map_or(WantedCalls::Hits, WantedCalls::In), focus.pair?))).collect()
 }
 
-/// Evidence on its way, with the reference's own run and its steps from the trace's states.
+/// Collects the evidence, with the reference's own run and its steps from the trace's states.
 struct Gathering<'a> {
     scene: &'a Scene,
     free: Simulation,
@@ -198,7 +199,7 @@ impl<'a> Gathering<'a> {
         (self.evidence.layout.polynomials || !is_mid) && self.evidence.window.holds(step, is_mid)
     }
 
-    /// Makes a step of the reference's own run.
+    /// Advances the reference's own run by one step.
     fn run_freely(&mut self, step: u32) {
         let mut midway = MidState::default();
         self.free_goes_on = self.free_goes_on && self.free.step(&mut midway).is_ok();
@@ -220,7 +221,8 @@ impl<'a> Gathering<'a> {
         }
     }
 
-    /// Makes a step from the trace's own state; `None` if it has no result. With `wanted` it is inspected in detail.
+    /// Runs a step from the trace's own state; `None` if it has no result. With `wanted` the step is inspected in
+    /// detail.
     fn step<'f>(
         &mut self,
         step: u32,
@@ -248,7 +250,7 @@ impl<'a> Gathering<'a> {
         done.then_some(count)
     }
 
-    /// Returns whether the reference's own run is elsewhere.
+    /// Returns whether the reference's own run has another state.
     fn is_apart(&self, end: &State) -> bool {
         self.free_goes_on && largest(&self.free.state().positions, &end.positions) > APART
     }
@@ -265,10 +267,10 @@ impl<'a> Gathering<'a> {
     }
 }
 
-/// Returns the steps to show in detail: those of findings, and those around the first wrong one; of many, the most
+/// Returns the steps shown in detail: those of findings, and those around the first wrong step; of many, the most
 /// important ones.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
-    let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, CLOSE_UPS));
+    let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
     for step in near.chain(focus.iter().map(|focus| focus.step)) {
@@ -279,22 +281,22 @@ fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec
     chosen
 }
 
-/// Returns how far two states are apart: in positions and in velocities.
+/// Returns the distances between two states, in positions and in velocities.
 fn distances(one: &State, other: &State) -> [f64; 2] {
     [largest(&one.positions, &other.positions), largest(&one.velocities, &other.velocities)]
 }
 
-/// Returns the largest distance of two lists' numbers; NaN where one of them is no number.
+/// Returns the largest distance between the numbers of two lists; NaN if one of them is NaN.
 fn largest(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
 }
 
-/// Returns the larger number; NaN is worse than any.
+/// Returns the larger number; NaN counts as larger than any number.
 fn worse(one: f64, other: f64) -> f64 {
     if one.is_nan() || other <= one { one } else { other }
 }
 
-/// Keeps the state of the synchronization point.
+/// An observer that keeps the state of the synchronization point.
 #[derive(Default)]
 struct MidState {
     state: Option<State>,
@@ -306,18 +308,18 @@ impl Observer for MidState {
     }
 }
 
-/// Counts passes and calls, and has the step go on with the trace's mid record.
+/// An observer that counts passes and calls, and makes the step continue with the trace's mid record.
 #[derive(Default)]
 struct PassCount<'a> {
     mid: Option<&'a State>,
     passes: u32,
     polynomials: usize,
-    /// The distance of the trace's mid record from the expected one: positions and velocities.
+    /// The distances of the trace's mid record from the expected one, in positions and velocities.
     apart: [f64; 2],
 }
 
 impl PassCount<'_> {
-    /// Returns the number of passes that log this number of polynomials: every pass of a step logs as many.
+    /// Returns the number of passes that log `logged` polynomials; all passes of a step log the same number.
     fn passes_of(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {
@@ -347,6 +349,6 @@ impl Steer for PassCount<'_> {
         if let Some(mid) = self.mid {
             self.apart = distances(state, mid);
         }
-        go_on_from(self.mid, state)
+        continue_from(self.mid, state)
     }
 }

@@ -1,4 +1,4 @@
-//! One pair in one step, from a given state: the reference's computation, and the trace's log of it.
+//! One pair in one step from a given state: the reference's computation, and the trace's log.
 use crate::inspected_step::{InspectedStep, Inspector, WantedCalls};
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -9,17 +9,17 @@ use fosssim_model::{
 /// A pair in a step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectedPair {
-    /// The step; its calls are the pair's, pass by pass.
+    /// The step, with only the pair's calls, pass by pass.
     pub step: InspectedStep,
     /// The end state of the step.
     pub end: State,
-    /// The reason why it has no result.
+    /// The error, if the step has no result.
     pub failed: Option<StepError>,
 }
 
 /// Inspects all detection calls of a pair in a step that starts from `before`. The step continues with the trace's
-/// `records`, or without these as the reference continues: the state of its mid record, which counts for `hybrid`, and
-/// the polynomials of its end record.
+/// `records`, which are the state of its mid record (used in `hybrid`) and the polynomials of its end record; without
+/// records, it continues like the reference.
 #[must_use]
 pub fn inspect(
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! One step in detail: every detection pass, contact and zone, and the calls that findings are about.
+//! One step in detail: every detection pass, contact and zone, and the calls of findings.
 use crate::matching::{differ, matching};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
@@ -7,52 +7,52 @@ use fosssim_model::{
     trace::{LoggedImpulse, PolynomialLog},
 };
 
-/// The greatest number of passes kept of a step, and of numbers in their positions; large scenes have fewer passes.
-const PASSES: usize = 24;
+/// The maximum number of kept passes of a step, and of numbers in their positions; large scenes have fewer passes.
+const MAX_PASSES: usize = 24;
 const POSITIONS: usize = 12_000;
-/// The greatest number of pairs kept of a pass: differing, missing, and repeated ones.
-const PAIRS: usize = 256;
-/// The number of calls kept of a step, in case the trace has logged another number of polynomials.
-const CALLS: usize = 1 << 14;
-/// The greatest number of calls shown that are wrong or missing without a finding about them.
-const SHOWN: usize = 2;
+/// The maximum number of kept pairs of a pass, for each of differing, missing and repeated ones.
+const MAX_PAIRS: usize = 256;
+/// The maximum number of kept calls of a step, in case the trace has logged another number of polynomials.
+const MAX_CALLS: usize = 1 << 14;
+/// The maximum number of wrong or missing calls that are shown without a finding.
+const MAX_SHOWN_CALLS: usize = 2;
 
 /// A detection pass of the reference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectedPass {
-    /// The pass.
+    /// The detection pass.
     pub pass: Pass,
-    /// Positions at the end of the step as the pass sees them.
+    /// The end positions of the step that the pass uses.
     pub q_end: Vec<f64>,
-    /// The number of pairs that it checks.
+    /// The number of pairs that the pass checks.
     pub calls: usize,
-    /// The collisions that it finds.
+    /// The collisions that the pass finds.
     pub hits: Vec<Impulse>,
-    /// The first pairs for which the trace has logged other polynomials, up to a factor.
+    /// The first pairs whose logged polynomials differ by more than a factor.
     pub differing: Vec<Pair>,
-    /// The first pairs for which it has logged none.
+    /// The first pairs without logged polynomials.
     pub missing: Vec<Pair>,
-    /// The first pairs whose polynomials it has logged once more.
+    /// The first pairs whose polynomials are logged twice.
     pub repeated: Vec<Pair>,
     /// Whether the trace's polynomials of this pass are known.
     pub is_logged: bool,
 }
 
-/// Impact zones after one merge.
+/// The impact zones after one merge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MergedZones {
     /// The geometric round; 0 before the first failsafe.
     pub round: u32,
-    /// The particles of each zone, and whether a half-plane is part of it.
+    /// The particles of each zone, and whether it contains a half-plane.
     pub zones: Vec<(Vec<u32>, bool)>,
 }
 
 /// The trace's log of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CallLog {
-    /// These polynomials in the order of the reference's, highest power first; a missing one is empty.
+    /// The logged polynomials in the order of the reference's, highest power first; a missing one is empty.
     These(Vec<Vec<f64>>),
-    /// Nothing.
+    /// The trace has logged no polynomials of the call.
     Nothing,
     /// The call's polynomials are unknown.
     Unknown,
@@ -61,15 +61,15 @@ pub enum CallLog {
 /// A detection call in detail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectedCall {
-    /// The pass.
+    /// The pass of the call.
     pub pass: Pass,
-    /// The pair.
+    /// The pair of the call.
     pub pair: Pair,
-    /// The reference's own computation of it.
+    /// The reference's own computation of the call.
     pub study: Result<Study, NoAnswer>,
-    /// The number of polynomials that the reference logs for it; none without continuous-time detection.
+    /// The number of polynomials that the reference logs for the call; 0 without continuous-time detection.
     pub polynomials: usize,
-    /// The trace's log of it.
+    /// The trace's log of the call.
     pub logged: CallLog,
 }
 
@@ -82,38 +82,38 @@ pub struct InspectedStep {
     pub expected_mid: Option<State>,
     /// The expected end record, given the trace's own mid record; `None` if the step has no result.
     pub expected_end: Option<State>,
-    /// The first of the reference's detection passes.
+    /// The first detection passes of the reference.
     pub passes: Vec<InspectedPass>,
-    /// The number of passes that the reference makes.
+    /// The number of the reference's passes.
     pub expected_passes: usize,
     /// The number of polynomials that the reference logs.
     pub expected_polynomials: usize,
     /// The number of polynomials that the trace has logged.
     pub actual_polynomials: usize,
-    /// The number of these that answer no call of the reference; `None` if it is unknown.
+    /// The number of logged polynomials without a call of the reference; `None` if unknown.
     pub surplus: Option<usize>,
     /// The responses of the reference.
     pub expected_contacts: Vec<Impulse>,
     /// The impulse list of the trace.
     pub actual_contacts: Vec<LoggedImpulse>,
-    /// Impact zones.
+    /// The impact zones after each merge.
     pub zones: Vec<MergedZones>,
-    /// The calls that findings are about, and some that are wrong or missing.
+    /// The calls of findings, and several other wrong or missing calls.
     pub calls: Vec<InspectedCall>,
 }
 
-/// Which calls of a pair are wanted.
+/// The selection of a pair's calls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum WantedCalls {
-    /// The calls that end in a collision.
+    /// The calls that find a collision.
     Hits,
     /// The call of this pass.
     In(Pass),
-    /// All.
+    /// All calls of the pair.
     Every,
 }
 
-/// A call of the reference, for the case that the trace's list has to be matched.
+/// A call of the reference, kept in case the trace's list must be matched.
 struct AskedCall {
     pass: Pass,
     /// The number of the pass in the step.
@@ -124,27 +124,27 @@ struct AskedCall {
     count: usize,
 }
 
-/// Listens to one step of the reference.
+/// An observer of one reference step that keeps its details.
 pub(crate) struct Inspector<'a> {
     scene: &'a Scene,
-    /// The trace's mid record, with which the step continues, and its polynomials.
+    /// The trace's mid record, with which the step continues.
     mid: Option<&'a State>,
     log: Option<&'a PolynomialLog>,
     wanted: &'a [(WantedCalls, Pair)],
     pass: Option<Pass>,
-    /// The calls and their polynomials; none beyond [`CALLS`].
+    /// The calls and their polynomials, at most [`MAX_CALLS`].
     asked: Vec<AskedCall>,
     right: PolynomialLog,
-    /// For each inspected call its number in the step and its first polynomial's.
+    /// The number in the step of each inspected call, and the index of its first polynomial.
     places: Vec<(usize, usize)>,
-    /// All calls so far.
+    /// The number of calls so far.
     calls: usize,
     pub(crate) step: InspectedStep,
 }
 
 impl<'a> Inspector<'a> {
-    /// Creates the step when nothing is seen yet. `log` holds the first of the `logged` polynomials that the trace has
-    /// in this step.
+    /// Creates the inspector before the step begins. `log` holds the first of the trace's `logged` polynomials in this
+    /// step.
     pub(crate) fn new(
         scene: &'a Scene,
         step: u32,
@@ -153,14 +153,14 @@ impl<'a> Inspector<'a> {
         wanted: &'a [(WantedCalls, Pair)],
     ) -> Self {
         let step = InspectedStep { step, actual_polynomials: logged, ..InspectedStep::default() };
-        // An entry that was not kept looks like a missing one.
+        // An entry that was not kept would look missing.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
         Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, step }
     }
 
     fn most_passes(&self) -> usize {
-        (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, PASSES)
+        (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, MAX_PASSES)
     }
 
     /// Returns the inspected step, with the trace's log of each call.
@@ -174,7 +174,7 @@ impl<'a> Inspector<'a> {
         } else if self.calls == self.asked.len() {
             match self.log {
                 Some(log) => self.assign(log),
-                // An empty list leaves nothing to doubt.
+                // An empty list is unambiguous.
                 None if actual == 0 => self.assign(&PolynomialLog::default()),
                 None => {}
             }
@@ -222,7 +222,7 @@ impl<'a> Inspector<'a> {
         }
         let mut surplus = is_claimed.iter().filter(|claimed| !**claimed).count();
         self.step.surplus = Some(surplus);
-        // A polynomial that answers no call may be of a call that was made twice: then it follows or precedes the
+        // A polynomial without a call may belong to a call that was made twice. It then follows or precedes the
         // polynomials of its pass.
         let mut place = 0;
         while place < log.len() && surplus > 0 {
@@ -253,7 +253,7 @@ impl<'a> Inspector<'a> {
         }
     }
 
-    /// Inspects calls that are wrong or missing although no finding names them.
+    /// Inspects wrong or missing calls without a finding.
     fn show_more(&mut self) {
         let Some(pass) =
             self.step.passes.iter().position(|pass| !(pass.differing.is_empty() && pass.missing.is_empty()))
@@ -262,9 +262,9 @@ impl<'a> Inspector<'a> {
         };
         let up = &self.step.passes[pass];
         let wrong: Vec<Pair> = [up.missing.first(), up.differing.first()].into_iter().flatten().copied().collect();
-        for pair in wrong.into_iter().take(SHOWN) {
+        for pair in wrong.into_iter().take(MAX_SHOWN_CALLS) {
             let is_shown = |call: &InspectedCall| call.pair == pair && call.pass == self.step.passes[pass].pass;
-            if self.step.calls.len() >= SHOWN || self.step.calls.iter().any(is_shown) {
+            if self.step.calls.len() >= MAX_SHOWN_CALLS || self.step.calls.iter().any(is_shown) {
                 continue;
             }
             let Some(asked) = self.asked.iter().find(|asked| asked.number == pass && asked.pair == pair) else {
@@ -287,7 +287,7 @@ impl<'a> Inspector<'a> {
     }
 }
 
-/// Returns the log of a call by its place in the list; unknown where the list has another length than the reference's.
+/// Returns the log of a call by its position in the list; unknown if the list's length differs from the reference's.
 fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: usize) -> CallLog {
     match log {
         Some(log) if log.len() == expected => {
@@ -298,19 +298,19 @@ fn by_order(log: Option<&PolynomialLog>, expected: usize, first: usize, count: u
 }
 
 fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
-    if pairs.len() < PAIRS {
+    if pairs.len() < MAX_PAIRS {
         pairs.push(pair);
     }
 }
 
 impl Steer for Inspector<'_> {
     fn synchronize(&mut self, state: &mut State) -> Resume {
-        go_on_from(self.mid, state)
+        continue_from(self.mid, state)
     }
 }
 
-/// Continues a step from the trace's mid record, if it has one of the scene's size.
-pub(crate) fn go_on_from(mid: Option<&State>, state: &mut State) -> Resume {
+/// Continues a step from the trace's mid record, if that has the scene's size.
+pub(crate) fn continue_from(mid: Option<&State>, state: &mut State) -> Resume {
     match mid {
         Some(mid) if mid.positions.len() == state.positions.len() => {
             state.clone_from(mid);
@@ -356,11 +356,11 @@ impl Observer for Inspector<'_> {
         });
         if wanted {
             let study = Study::for_motion(&motion());
-            // Only the whole step shows whether the list is as long as the reference's.
+            // Whether the list is as long as the reference's is known only after the whole step.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
             self.places.push((self.calls - 1, first));
         }
-        if self.asked.len() < CALLS {
+        if self.asked.len() < MAX_CALLS {
             let number = self.step.expected_passes - 1;
             self.asked.push(AskedCall { pass, number, pair, motion: motion(), first, count });
             detection.polynomials.iter().for_each(|polynomial| self.right.push(polynomial.coefficients()));

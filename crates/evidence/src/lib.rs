@@ -1,9 +1,9 @@
-//! Evidence: the data that a viewer shows of a judged trace. Both motions, the reference's events in each step from the
-//! trace's own state, and the detection calls that findings are about.
+//! The data that a viewer shows of a judged trace: both motions, the reference's events in each step from the trace's
+//! own state, and the detection calls of findings.
 //!
-//! Judges nothing: its caller knows which steps are wrong ([`StepRulings`]). It reads the trace once more and holds no
-//! more than [`BUDGET`], so that it can be made of a trace of any length. A step starts from the trace's own state
-//! (oracle-behavior.md 4.2), takes over the trace's mid record, and ends where the reference ends from there.
+//! This crate judges nothing; its caller provides the wrong steps ([`StepRulings`]). It reads the trace again and holds
+//! at most [`BUDGET`] numbers, so a trace of any length has evidence. A step starts from the trace's own state
+//! (oracle-behavior.md 4.2), uses the trace's mid record, and ends where the reference ends from there.
 //!
 //! ```
 //! use fosssim_evidence::{KeptPart, examine};
@@ -31,7 +31,7 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
-mod examined;
+mod examined_trace;
 mod gather;
 mod inspected_pair;
 mod inspected_step;
@@ -41,7 +41,7 @@ mod rulings;
 mod tests;
 mod track;
 
-pub use examined::{ExaminedTrace, KeptPart, examine};
+pub use examined_trace::{ExaminedTrace, KeptPart, examine};
 pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, inspect};
 pub use inspected_step::{CallLog, InspectedCall, InspectedPass, InspectedStep, MergedZones};

@@ -1,24 +1,24 @@
 //! Assigns the polynomials of a trace's list to the reference's if their numbers differ.
 //!
-//! The shortest edit script between the two lists (R. A. Wagner and M. J. Fischer, "The string-to-string correction
-//! problem", J. ACM 21, 1974): an omission or insertion costs more than half of what a wrong polynomial costs, so that
-//! a wrong polynomial in the right place is not taken for a missing one. A mark is no verdict: with wrong and missing
-//! ones together, other scripts may be as short.
+//! The assignment is the shortest edit script between the two lists (R. A. Wagner and M. J. Fischer, "The
+//! string-to-string correction problem", J. ACM 21, 1974). An omission or insertion costs more than half of a wrong
+//! polynomial, so a wrong polynomial in the right place does not count as missing. A mark is not a verdict: with wrong
+//! and missing polynomials together, other scripts may be equally short.
 use fosssim_model::trace::PolynomialLog;
 
-/// The greatest number of pairs of polynomials that are compared.
-const CELLS: usize = 4 << 20;
+/// The maximum number of pairs of polynomials that are compared.
+const MAX_COMPARISONS: usize = 4 << 20;
 
 /// The costs of an omitted or inserted polynomial, and of a wrong one.
 const GAP: u32 = 2;
 const WRONG: u32 = 3;
 
-/// Coefficients may be off by this part of their polynomial's largest one before a call is marked as differing. A mark
-/// is no verdict; raised, faint differences get none.
-const MARKED: f64 = 1e-9;
+/// The deviation of coefficients, relative to their polynomial's largest, above which a call is marked as differing. A
+/// mark is not a verdict; with a larger value, small differences are not marked.
+const MARKED_DEVIATION: f64 = 1e-9;
 
-/// Finds for each expected polynomial the place of its answer in the trace's list, right or wrong; `None` if the lists
-/// are too long to be compared.
+/// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong; `None` if the
+/// lists are too long to be compared.
 pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
@@ -30,7 +30,7 @@ pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Opti
         found[rows - 1 - back] = Some(columns - 1 - back);
     }
     let (tall, wide) = (rows - head - tail, columns - head - tail);
-    if tall.checked_mul(wide)? > CELLS {
+    if tall.checked_mul(wide)? > MAX_COMPARISONS {
         return None;
     }
     let mut cells = vec![0_u8; tall * wide];
@@ -68,23 +68,23 @@ fn count(places: usize) -> u32 {
     u32::try_from(places).unwrap_or(u32::MAX / GAP)
 }
 
-/// Returns whether one polynomial is visibly no positive multiple of the other.
+/// Returns whether one polynomial is visibly not a positive multiple of the other.
 pub(crate) fn differ(own: &[f64], right: &[f64]) -> bool {
     let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (most, scale) = (largest(own), largest(right));
     if scale == 0.0 || most == 0.0 || !most.is_finite() {
         return own.len() != right.len() && (most != 0.0 || scale != 0.0);
     }
-    // The course's library may have dropped leading coefficients of one and not of the other: then they are small.
+    // The course's library may have dropped leading coefficients of one and not of the other; they are then small.
     let (excess, own) = own.split_at(own.len().saturating_sub(right.len()));
     let (missing, right) = right.split_at(right.len() - own.len());
-    let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED * size);
+    let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED_DEVIATION * size);
     if !(small(excess, most) && small(missing, scale)) {
         return true;
     }
     let place = right.iter().position(|c| c.abs() == scale).unwrap_or(0);
     let factor = own[place] / right[place];
-    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED * (factor * scale).abs();
+    let near = |(own, right): (&f64, &f64)| (own - factor * right).abs() <= MARKED_DEVIATION * (factor * scale).abs();
     !(factor > 0.0 && own.iter().zip(right).all(near))
 }
 
@@ -109,7 +109,7 @@ mod tests {
         let (kept, dropped): (&[f64], &[f64]) = (&[5e-12, -513600.0], &[-12.84]);
         assert_eq!(matched(&[dropped, b], &[c, kept, b]), [Some(1), Some(2)]);
         assert_eq!(matched(&[a, kept, b], &[dropped, b]), [None, Some(0), Some(1)]);
-        // A wrong one stays in its place, and a factor makes none wrong.
+        // A wrong polynomial keeps its place, and a factor does not make a polynomial wrong.
         assert_eq!(matched(&[a, b, c, d], &[&[9.0, 9.0], &[30.0, -10.0, 5.0], c]), [Some(0), Some(1), Some(2), None]);
         assert_eq!(matched(&[a], &[]), [None]);
         assert!(matched(&[], &[a]).is_empty());

@@ -1,28 +1,28 @@
-//! The wrong steps, noted while the judge judges.
+//! Records the wrong steps while the judge runs.
 use fosssim_judge::{
     Outcome,
     replay::{Progress, Remark, WrongStep},
 };
 
-/// The ruling of both rule books on one step.
+/// The rulings of both rule books on one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct StepRuling {
-    /// Whether the original's rules find something wrong in it.
+    /// Whether the original's rules find a fault in the step.
     pub wrong_by_parity: bool,
-    /// Whether the fair rules find it wrong; `false` also if they did not judge.
+    /// Whether the fair rules find a fault in the step; also `false` if they did not judge.
     pub wrong_by_fair: bool,
-    /// Whether its records, or some before it, are damaged: then its numbers prove nothing.
+    /// Whether the step's records, or earlier ones, are damaged, so that its numbers prove nothing.
     pub damaged: bool,
 }
 
-/// Keeps the rulings on all steps.
+/// An observer that keeps the rulings on all steps.
 #[derive(Debug, Default)]
 pub struct StepRulings {
     steps: Vec<StepRuling>,
 }
 
 impl StepRulings {
-    /// Returns the rulings in the order of the steps, once the trace has been judged.
+    /// Returns the rulings in the order of the steps, after the trace has been judged.
     #[must_use]
     pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
         // Damage lasts to the end.

@@ -1,25 +1,27 @@
-//! A motion: positions and velocities of consecutive records, exact to the last bit.
+//! A motion, as the exact positions and velocities of consecutive records.
 use fosssim_model::{
     sim::State,
     trace::{Layout, Lenient, LenientFrame},
 };
 use std::io::Read;
 
-/// The greatest number of numbers kept of a motion (16 MB). The largest course scene has 70,444 (11 particles, 1,601
-/// records); lowered, long scenes show a part of their motion only; raised, memory and pages grow.
+/// The maximum number of kept numbers of a motion (16 MB). The largest course scene has 70,444 (11 particles, 1,601
+/// records). With a lower limit, long scenes show only a part of their motion; with a higher limit, memory and pages
+/// grow.
 pub const BUDGET: usize = 1 << 21;
 
-/// The kept records: those of the steps `first` to `last` (0 is the initial record).
+/// The kept records: those of steps `first` to `last` (0 is the initial record).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
-    /// The first step; its end record is the first that is kept.
+    /// The first step, whose end record is the first kept record.
     pub first: u32,
     /// The last step.
     pub last: u32,
 }
 
 impl Window {
-    /// Returns all steps, if a motion of that length fits in the budget; else those around `focus`, a third before it.
+    /// Returns all steps, if a motion of that length fits in the budget, otherwise the steps around `focus`, a third of
+    /// them before it.
     #[must_use]
     pub fn for_focus(focus: u32, layout: Layout, budget: usize) -> Self {
         let per_step = 4 * layout.particles.max(1) * layout.records_per_step() as usize;
@@ -31,30 +33,30 @@ impl Window {
         Self { first, last: first + room }
     }
 
-    /// Returns whether the scene's motion is kept as a whole.
+    /// Returns whether the scene's whole motion is kept.
     #[must_use]
     pub const fn is_whole(&self, steps: u32) -> bool {
         self.first == 0 && self.last >= steps
     }
 
-    /// Returns whether a record of this step is kept.
+    /// Returns whether a record of a step is kept.
     #[must_use]
     pub const fn holds(&self, step: u32, is_mid: bool) -> bool {
         (self.first < step || self.first == step && !is_mid) && step <= self.last
     }
 }
 
-/// Consecutive records of a motion, from the end record of a window's first step on.
+/// Consecutive records of a motion, starting with the end record of a window's first step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Track {
-    /// Per record positions and velocities in trace order, 2N each.
+    /// The positions and velocities of each record in trace order, 2N each.
     pub values: Vec<f64>,
-    /// The number of records; fewer than the window where the motion ends early.
+    /// The number of records; fewer than in the window if the motion ends early.
     pub records: usize,
 }
 
 impl Track {
-    /// Reads the records of a trace in a window, up to the place at which it can't be read.
+    /// Reads the records of a trace in a window, up to the first unreadable place.
     #[must_use]
     pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
         let mut reader = Lenient::new(trace, layout);

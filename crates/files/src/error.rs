@@ -1,4 +1,4 @@
-//! The reason why a file was not taken.
+//! The reason why a file was rejected.
 use std::{
     ffi::OsStr,
     fs::{File, Metadata},
@@ -6,29 +6,29 @@ use std::{
     os::unix::fs::FileTypeExt,
 };
 
-/// The reason why a file was not taken. Except for [`FileError::System`] the person who filled the folder caused these.
+/// The reason why a file was rejected. Except for [`FileError::System`], the person who filled the folder is the cause.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// There is no file of this name.
-    #[error("there is no file {name}")]
+    /// The file does not exist.
+    #[error("the file {name} does not exist")]
     Missing {
         /// The file's name, escaped.
         name: String,
     },
-    /// There is something else of this name.
+    /// The name is that of a folder, link or device.
     #[error("{name} is {what}, not a regular file")]
     NotRegular {
         /// The file's name, escaped.
         name: String,
-        /// The kind of thing found instead.
+        /// The kind of entry that was found instead.
         what: &'static str,
     },
-    /// The file has further names, perhaps outside the folder.
+    /// The file has several names, possibly outside the folder.
     #[error("{name} is a hard link: the file has {links} names")]
     Linked {
         /// The file's name, escaped.
         name: String,
-        /// The number of names that it has.
+        /// The number of the file's names.
         links: u64,
     },
     /// The file is too long.
@@ -46,13 +46,13 @@ pub enum FileError {
     System {
         /// The file's name, escaped.
         name: String,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
 }
 
 impl FileError {
-    /// Returns why a file could not be opened.
+    /// Returns the reason why a file could not be opened.
     pub(crate) fn not_opened(name: String, error: io::Error) -> Self {
         match error.raw_os_error() {
             Some(libc::ENOENT | libc::ENOTDIR) => Self::Missing { name },
@@ -65,12 +65,12 @@ impl FileError {
     }
 }
 
-/// Returns a name as messages show it.
+/// Returns a name escaped for messages.
 pub(crate) fn escape(name: &OsStr) -> String {
     name.to_string_lossy().escape_debug().to_string()
 }
 
-/// Returns the facts of an open file, which must be a regular file.
+/// Returns the metadata of an open file, which must be a regular file.
 pub(crate) fn regular(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
     let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
     let kind = metadata.file_type();

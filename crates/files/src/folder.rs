@@ -1,4 +1,4 @@
-//! Files beneath a folder that others may have filled, or fill meanwhile.
+//! Accesses files below a folder that others may have filled, or may be filling.
 use super::{
     Identity,
     error::{FileError, escape, regular},
@@ -19,29 +19,29 @@ use std::{
     sync::Arc,
 };
 
-/// The way in which everything is opened: never through a link, never waiting, never inherited.
-const CLOSED: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
+/// The flags for opening files: never through a link, never waiting, never inherited.
+const SAFE_FLAGS: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
 
 /// The bits of a new folder's mode, before the mask.
 const FOLDER_MODE: u32 = 0o777;
 
-/// A folder that is held open. Its entries are reached by their own names only: no link leads out, and a path that is
-/// exchanged meanwhile leads nowhere else.
+/// An open folder. Its entries are accessed only by their own names: no link leads out, and a path that is replaced in
+/// the meantime leads nowhere else.
 #[derive(Debug, Clone)]
 pub struct Folder {
     fd: Arc<OwnedFd>,
-    /// As it was called when it was opened, for messages.
+    /// The path when the folder was opened, for messages.
     shown: PathBuf,
 }
 
 /// An entry of a [`Folder`].
 #[derive(Debug)]
 pub enum FolderEntry {
-    /// A regular file, open.
+    /// An open regular file.
     File(File),
-    /// A folder, open.
+    /// An open folder.
     Folder(Folder),
-    /// Neither: a link, a pipe, a socket or a device.
+    /// A link, a pipe, a socket or a device.
     Other,
 }
 
@@ -52,10 +52,10 @@ impl From<OwnedFd> for Folder {
 }
 
 impl Folder {
-    /// Opens the folder at the path, to read its entries. The path itself may lead over links.
+    /// Opens the folder at `path`, to read its entries. The path itself may contain links.
     ///
     /// # Errors
-    /// When there is none or it is closed to us.
+    /// If the folder does not exist, or access is denied.
     pub fn open(path: &Path) -> io::Result<Self> {
         let folder = OpenOptions::new().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NONBLOCK).open(path)?;
         Ok(Self { fd: Arc::new(folder.into()), shown: path.to_owned() })
@@ -64,33 +64,33 @@ impl Folder {
     /// Opens a folder to write files into, which need not be readable.
     ///
     /// # Errors
-    /// When there is none or it is closed to us.
+    /// If the folder does not exist, or access is denied.
     pub fn to_write(path: &Path) -> io::Result<Self> {
         let flags = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
         Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
     }
 
-    /// Opens a folder as [`Folder::to_write`] does, and makes it with all folders above it where there is none.
+    /// Opens a folder like [`Folder::to_write`], and creates missing folders on the path.
     ///
     /// # Errors
-    /// When it can't be made or opened.
+    /// If it cannot be created or opened.
     pub fn make(path: &Path) -> io::Result<Self> {
         std::fs::create_dir_all(path)?;
         Self::to_write(path)
     }
 
-    /// Returns the name under which it was opened.
+    /// Returns the path under which the folder was opened.
     #[must_use]
     pub fn given_path(&self) -> &Path {
         &self.shown
     }
 
-    /// Returns the names of its entries.
+    /// Returns the names of the folder's entries.
     ///
     /// # Errors
-    /// When it can't be read.
+    /// If the folder cannot be read.
     pub fn names(&self) -> io::Result<Vec<OsString>> {
-        let flags = OFlags::RDONLY | OFlags::DIRECTORY | CLOSED;
+        let flags = OFlags::RDONLY | OFlags::DIRECTORY | SAFE_FLAGS;
         let mut names = Vec::new();
         for entry in Dir::new(openat(&*self.fd, ".", flags, Mode::empty())?)? {
             let entry = entry?;
@@ -102,12 +102,12 @@ impl Folder {
         Ok(names)
     }
 
-    /// Returns the entry under this name, opened once.
+    /// Opens an entry once and returns it.
     ///
     /// # Errors
-    /// When it can't be opened; [`io::ErrorKind::NotFound`] when it was removed.
+    /// If it cannot be opened; [`io::ErrorKind::NotFound`] if it was removed.
     pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
-        let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | CLOSED, Mode::empty()) {
+        let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | SAFE_FLAGS, Mode::empty()) {
             Ok(fd) => File::from(fd),
             Err(Errno::LOOP | Errno::NXIO | Errno::NODEV) => return Ok(FolderEntry::Other),
             Err(error) => return Err(error.into()),
@@ -120,22 +120,22 @@ impl Folder {
         })
     }
 
-    /// Returns the folder of this name in it, to write into.
+    /// Returns the subfolder `name`, to write into.
     ///
     /// # Errors
-    /// When there is none, or it is a link.
+    /// If it does not exist, or is a link.
     pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
         let inner = step(self.as_fd(), single(name)?).map_err(|error| match error.raw_os_error() {
-            Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed: remove it"),
+            Some(libc::ELOOP) => io::Error::other("it is a link, and links are not followed; replace it by the file"),
             _ => error,
         });
         Ok(self.inner(inner?, name))
     }
 
-    /// Opens a folder as [`Folder::folder`] does, and makes it where there is none.
+    /// Opens a subfolder like [`Folder::folder`], and creates it if it does not exist.
     ///
     /// # Errors
-    /// When it can't be made, or something else has its name.
+    /// If it cannot be created, or another kind of entry has its name.
     pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
         match mkdirat(&*self.fd, single(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
             Ok(()) | Err(Errno::EXIST) => self.folder(name),
@@ -143,11 +143,11 @@ impl Folder {
         }
     }
 
-    /// Returns the regular file `name` (which may contain `/`, but leads out of nowhere), open, with its length in
+    /// Returns the open regular file `name` (which may contain `/`, but does not leave the folder), with its length in
     /// bytes.
     ///
     /// # Errors
-    /// When it is missing, not a regular file, reached through a link, or longer than `max_bytes`.
+    /// If the file is missing, not a regular file, reached through a link, or longer than `max_bytes`.
     pub fn file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
         let shown = || escape(name);
         let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
@@ -158,10 +158,10 @@ impl Folder {
         Ok((file, length))
     }
 
-    /// Opens a file as [`Folder::file`] does, for a file that must have no other name.
+    /// Opens a file like [`Folder::file`]; the file must have no other name.
     ///
     /// # Errors
-    /// As for [`Folder::file`], and when it has a second name.
+    /// The errors of [`Folder::file`], and a second name.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
         let (file, length) = self.file(OsStr::new(name), max_bytes)?;
         let links = regular(&file, || escape(OsStr::new(name)))?.nlink();
@@ -174,7 +174,7 @@ impl Folder {
     /// Reads the contents of a regular file.
     ///
     /// # Errors
-    /// As for [`Folder::file`]; also when it grows beyond `max_bytes` while it is read.
+    /// The errors of [`Folder::file`]; also if the file grows beyond `max_bytes` while it is read.
     pub fn read(&self, name: &OsStr, max_bytes: u64) -> Result<Vec<u8>, FileError> {
         let (file, length) = self.file(name, max_bytes)?;
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default() + 1);
@@ -187,12 +187,12 @@ impl Folder {
         }
     }
 
-    /// Opens a file of our own to read and to write in place, and makes it where there is none.
+    /// Opens a file of the grader to read and write in place, and creates it if it does not exist.
     ///
     /// # Errors
-    /// When something else has its name.
+    /// If another kind of entry has its name.
     pub fn own_file(&self, name: &str) -> Result<File, FileError> {
-        let flags = OFlags::RDWR | OFlags::CREATE | CLOSED;
+        let flags = OFlags::RDWR | OFlags::CREATE | SAFE_FLAGS;
         let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
         let file = opened.map_err(|error| FileError::not_opened(name.to_owned(), error.into()))?;
         let file = File::from(file);
@@ -200,10 +200,10 @@ impl Folder {
         Ok(file)
     }
 
-    /// Removes a file or a link; that there is none is no error.
+    /// Removes a file or link; does nothing if it does not exist.
     ///
     /// # Errors
-    /// When it can't be removed.
+    /// If it cannot be removed.
     pub fn remove(&self, name: &OsStr) -> io::Result<()> {
         match unlinkat(&*self.fd, single(name)?, AtFlags::empty()) {
             Ok(()) | Err(Errno::NOENT) => Ok(()),
@@ -211,13 +211,13 @@ impl Folder {
         }
     }
 
-    /// Returns whether anything has this name.
+    /// Returns whether the folder has an entry named `name`.
     #[must_use]
     pub fn holds(&self, name: &OsStr) -> bool {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
-    /// Returns the file behind a name, without opening it; `None` for a link, and for anything but a regular file.
+    /// Returns the identity of a file without opening it; `None` for a link, and for anything except a regular file.
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.above(Path::new(name)).ok()?;
@@ -226,13 +226,13 @@ impl Folder {
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
     }
 
-    /// Returns a path that leads to this very folder as long as it is open, wherever it is by now.
+    /// Returns a path that leads to this folder as long as it is open, even if it is moved.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         PathBuf::from(format!("/proc/self/fd/{}", self.fd.as_raw_fd()))
     }
 
-    /// Returns the folder under a path of names, to read it or to write into it.
+    /// Returns the folder at a path of names, to read it or to write into it.
     pub(crate) fn beneath(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
@@ -245,19 +245,19 @@ impl Folder {
         Self { fd: Arc::new(fd), shown: self.shown.join(name) }
     }
 
-    /// Opens the entry at a path of names, each of which is looked up in the folder before it.
+    /// Opens the entry at a path of names; each name is looked up in the folder before it.
     fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
         let (above, last) = self.above(Path::new(name))?;
-        Ok(openat(&*above, last, OFlags::RDONLY | CLOSED, Mode::empty())?.into())
+        Ok(openat(&*above, last, OFlags::RDONLY | SAFE_FLAGS, Mode::empty())?.into())
     }
 
-    /// Returns the folder of the last name of a path, and that name.
+    /// Returns the folder of a path's last name, and that name.
     fn above<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
         let (folder, last) = self.names_of(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
     }
 
-    /// Returns the parts as [`Folder::above`] does, without a last name where the path has none.
+    /// Returns the parts like [`Folder::above`], without a last name if the path has none.
     fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
         let mut names = Vec::new();
         for component in path.components() {
@@ -282,16 +282,16 @@ impl AsFd for Folder {
     }
 }
 
-/// Returns the subfolder of this name.
+/// Returns the subfolder `name`.
 fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
-    openat(above, name, OFlags::PATH | OFlags::DIRECTORY | CLOSED, Mode::empty()).map_err(|error| {
+    openat(above, name, OFlags::PATH | OFlags::DIRECTORY | SAFE_FLAGS, Mode::empty()).map_err(|error| {
         let is_link = statat(above, name, AtFlags::SYMLINK_NOFOLLOW)
             .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink);
         if is_link { io::Error::from_raw_os_error(libc::ELOOP) } else { error.into() }
     })
 }
 
-/// Returns a name that stays in its folder.
+/// Returns a name that does not leave its folder.
 pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
     let mut components = Path::new(name).components();
     match (components.next(), components.next()) {
@@ -300,11 +300,11 @@ pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
     }
 }
 
-/// Opens the regular file at `path` once, without waiting, and returns its length. A link at its end is followed only
-/// with `follow`; the number of the file's names does not matter.
+/// Opens the regular file at `path` once, without waiting, and returns its length. A link at the end of the path is
+/// followed only with `follow`; the number of the file's names does not matter.
 ///
 /// # Errors
-/// When it is missing, not a regular file, or closed to us.
+/// If it is missing, not a regular file, or access is denied.
 pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
     let shown = || escape(path.as_os_str());
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };

@@ -1,11 +1,13 @@
-//! The one way to files.
+//! The only way to open files.
 //!
-//! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. Here a pipe without
-//!   a reader is an error immediately, one without a writer after a few seconds; if a file is expected, immediately.
-//! - **Nothing is read without a limit.** A device, a file that grows or one full of holes ends at the limit.
-//! - **No link is followed beneath a [`Folder`]**, neither to read nor to write: a user who fills a folder, or fills it
-//!   meanwhile, can't redirect it.
-//! - **What is written appears whole** ([`Replacement`]), and replaces a file of the same name.
+//! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. This crate reports
+//!   a pipe without a reader immediately, and a pipe without a writer after a few seconds, or immediately if a file is
+//!   expected.
+//! - **Nothing is read without a limit.** A device, a growing file, or a file full of holes is read only up to the
+//!   limit.
+//! - **No link is followed below a [`Folder`]**, neither to read nor to write, so a user who fills a folder cannot
+//!   redirect access, even at the same time.
+//! - **Written files appear whole** ([`Replacement`]), and replace files of the same name.
 //!
 //! ```
 //! use fosssim_files::Place;
@@ -53,39 +55,39 @@ impl Identity {
     }
 }
 
-/// Opens a file, a directory or a pipe for reading; a pipe is not waited for.
+/// Opens a file, a directory or a pipe for reading, without waiting for a pipe's writer.
 ///
 /// # Errors
-/// When it can't be opened.
+/// If it cannot be opened.
 pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
     let file = file.map_err(|error| match error.raw_os_error() {
-        Some(libc::ENXIO) => io::Error::other("it is a socket, or a device that is not there; name a file"),
+        Some(libc::ENXIO) => io::Error::other("it is a socket, or a missing device; name a regular file"),
         _ => error,
     })?;
     let metadata = file.metadata()?;
     Ok((file, metadata))
 }
 
-/// Opens for writing without waiting for a pipe's reader, whose absence is an error. What is opened waits, when it is
-/// written to, until there is room.
+/// Opens for writing without waiting for a pipe's reader, whose absence is an error. Writing then waits until there is
+/// room.
 ///
 /// # Errors
-/// When it can't be opened.
+/// If it cannot be opened.
 pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> {
     let first = options.clone().custom_flags(libc::O_NONBLOCK).open(name)?;
     let kind = first.metadata()?.file_type();
     if kind.is_fifo() || kind.is_char_device() {
-        // There is a reader. Through `first` a full pipe would be an error; through a second opening it is waited for.
+        // There is a reader. A full pipe would be an error with `first`; with a second opening, writing waits.
         return options.open(name);
     }
     Ok(first)
 }
 
-/// Reads a whole file that a user names, of a limited number of bytes; a pipe is read, too, and links are followed.
+/// Reads a whole file that a user names, with at most `limit` bytes. Pipes are read and links are followed.
 ///
 /// # Errors
-/// When it can't be read, is a folder, or is larger.
+/// If it cannot be read, is a folder, or is larger.
 pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let (file, metadata) = open_for_reading(name)?;
     if metadata.is_dir() {
@@ -94,21 +96,21 @@ pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_limited(file, &metadata, limit)
 }
 
-/// Reads text as [`read`] reads bytes.
+/// Reads text like [`read`].
 ///
 /// # Errors
-/// As for [`read`]; also where the bytes are no UTF-8.
+/// The errors of [`read`]; also if the bytes are not UTF-8.
 pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
     String::from_utf8(read(name, limit)?)
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is not text: {}", error.utf8_error())))
 }
 
-/// Reads an open file of at most this number of bytes.
+/// Reads an open file of at most `limit` bytes.
 ///
 /// # Errors
-/// When it can't be read, or is larger.
+/// If it cannot be read, or is larger.
 pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<Vec<u8>> {
-    // One byte more than it should have shows whether it ends there.
+    // One additional byte shows whether the file ends there.
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
     patient(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
@@ -118,13 +120,13 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
     Ok(bytes)
 }
 
-/// The longest time that a pipe may stay without a writer.
+/// The maximum time that a pipe may be without a writer.
 const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 
-/// Returns a reader that waits for the bytes of a pipe's writer, but not for a writer that never comes.
+/// Returns a reader that waits for the bytes of a pipe's writer, but not forever for a missing writer.
 ///
 /// # Errors
-/// When nothing is written within five seconds, or the pipe can't be read.
+/// If nothing is written within five seconds, or the pipe cannot be read.
 pub fn patient(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));
@@ -137,7 +139,7 @@ pub fn patient(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Sen
             // Without a writer a pipe seems to be at its end.
             Ok(0) if begun.elapsed() < PIPE_PATIENCE => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
-                let text = "it is a pipe that nobody has written to for five seconds";
+                let text = "it is a pipe without a writer for five seconds";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, text));
             }
             Ok(_) => return Ok(Box::new(Cursor::new(first).chain(pipe))),

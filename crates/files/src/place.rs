@@ -1,4 +1,4 @@
-//! Places in a folder of results: a user named the folder, and we named everything below it.
+//! Places in a folder of results: a user has named the folder, and the grader everything below it.
 use super::{FileError, Folder, Replacement, error::escape};
 use std::{
     ffi::OsStr,
@@ -7,8 +7,8 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A file or a folder below a folder that a user named. The folder may be reached over links; below it no link is
-/// followed, no matter who made it.
+/// A file or a folder below a folder that a user named. The path to the folder may contain links; below it no link is
+/// followed, no matter who created it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Place {
     folder: PathBuf,
@@ -16,8 +16,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Creates the place with these names, with `/` between them, below the folder; below the working folder where that
-    /// is empty.
+    /// Creates the place at `below`, a path of names, below the folder; an empty folder means the working folder.
     pub fn new(folder: impl Into<PathBuf>, below: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), below: below.into() }
     }
@@ -28,16 +27,16 @@ impl Place {
         Self { folder: self.folder.clone(), below: self.below.join(name) }
     }
 
-    /// Returns the whole path, for messages and for others to find it.
+    /// Returns the whole path, for messages and for other programs.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         if self.below.as_os_str().is_empty() { self.folder.clone() } else { self.folder.join(&self.below) }
     }
 
-    /// Returns the regular file at this place, open, with its length.
+    /// Returns the open regular file at this place, with its length.
     ///
     /// # Errors
-    /// As for [`Folder::file`].
+    /// The errors of [`Folder::file`].
     pub fn file(&self, most: u64) -> Result<(File, u64), FileError> {
         self.base().and_then(|folder| folder.file(self.below.as_os_str(), most))
     }
@@ -45,7 +44,7 @@ impl Place {
     /// Reads the contents of the regular file at this place.
     ///
     /// # Errors
-    /// As for [`Folder::read`].
+    /// The errors of [`Folder::read`].
     pub fn read(&self, most: u64) -> Result<Vec<u8>, FileError> {
         self.base().and_then(|folder| folder.read(self.below.as_os_str(), most))
     }
@@ -56,10 +55,10 @@ impl Place {
         self.base().is_ok_and(|folder| folder.identity(self.below.as_os_str()).is_some())
     }
 
-    /// Opens this place as a folder; it is made, with all folders above it, if there is none.
+    /// Opens this place as a folder, and creates missing folders on the path.
     ///
     /// # Errors
-    /// When it can't be made, or something else is in the way: a link, for example.
+    /// If it cannot be created, or another kind of entry (such as a link) has its name.
     pub fn make_folder(&self) -> io::Result<Folder> {
         self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
             let inner = folder.make_folder(name);
@@ -67,29 +66,29 @@ impl Place {
         })
     }
 
-    /// Returns a file that will be at this place when it is finished. Folders above it are made.
+    /// Returns a file that will appear at this place when it is finished. Missing folders on the path are created.
     ///
     /// # Errors
-    /// As for [`Place::make_folder`], and when no file can be made there.
+    /// The errors of [`Place::make_folder`], and if no file can be created there.
     pub fn replacement(&self) -> io::Result<Replacement> {
         let above = Self::new(&self.folder, self.below.parent().unwrap_or(Path::new("")));
         above.make_folder()?.replacement(self.below.file_name().unwrap_or_default(), None)
     }
 
-    /// Writes a whole file by rename. Folders above it are made.
+    /// Writes a whole file by rename. Missing folders on the path are created.
     ///
     /// # Errors
-    /// As for [`Place::replacement`], and when it can't be written.
+    /// The errors of [`Place::replacement`], and if the file cannot be written.
     pub fn write(&self, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement()?;
         io::Write::write_all(&mut file, bytes)?;
         file.finish()
     }
 
-    /// Removes the file or link at this place; a missing one is no error.
+    /// Removes the file or link at this place; does nothing if it does not exist.
     ///
     /// # Errors
-    /// When it can't be removed.
+    /// If it cannot be removed.
     pub fn remove(&self) -> io::Result<()> {
         let above = self.below.parent().unwrap_or(Path::new(""));
         match self.base().and_then(|folder| folder.beneath(above)) {
@@ -99,10 +98,10 @@ impl Place {
         }
     }
 
-    /// Returns the names of the entries; none if there is no folder.
+    /// Returns the names of the entries; empty if the folder does not exist.
     ///
     /// # Errors
-    /// When it can't be read, or is reached by a link.
+    /// If it cannot be read, or is reached by a link.
     pub fn names(&self) -> io::Result<Vec<std::ffi::OsString>> {
         match self.folder() {
             Ok(folder) => folder.names(),
@@ -114,7 +113,7 @@ impl Place {
     /// Returns the folder at this place.
     ///
     /// # Errors
-    /// When there is none, or it is reached by a link.
+    /// If it does not exist, or is reached by a link.
     pub fn folder(&self) -> Result<Folder, FileError> {
         self.base().and_then(|folder| folder.beneath(&self.below))
     }

@@ -1,4 +1,4 @@
-//! Files that appear whole: written next to their place under another name, and renamed.
+//! Files that appear whole: they are written under another name in the same folder, and then renamed.
 use super::folder::{Folder, single};
 use rustix::{
     fs::{AtFlags, Mode, OFlags, openat, renameat, unlinkat},
@@ -15,13 +15,13 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-/// The beginning of unfinished files' names.
+/// The prefix of unfinished files' names.
 pub const UNFINISHED: &str = ".fosssim-oracle-";
 
-/// Names of unfinished files that are tried.
+/// The number of names that are tried for an unfinished file.
 const TRIES: u32 = 100;
 
-/// A file that is being written. It gets its name with [`Replacement::finish`], and is removed without.
+/// A file that is being written. [`Replacement::finish`] gives it its name; without that, it is removed.
 #[derive(Debug)]
 pub struct Replacement {
     folder: Folder,
@@ -44,7 +44,7 @@ impl Replacement {
                 Ok(fd) => {
                     let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };
                     if let Some(mode) = mode {
-                        // The mode of a new file loses what the mask forbids; the mode of a replaced one must stay.
+                        // The mode of a new file is limited by the mask; the mode of a replaced file must stay.
                         made.file.set_permissions(Permissions::from_mode(mode))?;
                     }
                     return Ok(made);
@@ -59,23 +59,23 @@ impl Replacement {
         Err(problem.into())
     }
 
-    /// Returns the place of the bytes before the file is finished, with the folder's path from when it was opened.
+    /// Returns the path of the unfinished file, based on the folder's path when it was opened.
     #[must_use]
     pub fn unfinished_path(&self) -> PathBuf {
         self.folder.given_path().join(&self.unfinished)
     }
 
-    /// Returns where the file will be.
+    /// Returns the path of the finished file.
     #[must_use]
     pub fn target(&self) -> PathBuf {
         self.folder.given_path().join(&self.name)
     }
 
-    /// Lets the file appear under its name. A file of that name is replaced; a link is, too, and not the file to which
-    /// it leads.
+    /// Renames the temporary file to its final name. A file or link with that name is replaced, but not the file to
+    /// which the link leads.
     ///
     /// # Errors
-    /// When it can't be renamed; a file of that name is then as it was.
+    /// If it cannot be renamed; a file with that name is then unchanged.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         renameat(&self.folder, &self.unfinished, &self.folder, &self.name)?;
@@ -83,10 +83,10 @@ impl Replacement {
         Ok(())
     }
 
-    /// Finishes as [`Replacement::finish`] does, and returns the open file.
+    /// Finishes like [`Replacement::finish`], and returns the open file.
     ///
     /// # Errors
-    /// As for [`Replacement::finish`].
+    /// The errors of [`Replacement::finish`].
     pub fn finish_open(self) -> io::Result<File> {
         let file = self.file.try_clone()?;
         self.finish()?;
@@ -95,19 +95,18 @@ impl Replacement {
 }
 
 impl Folder {
-    /// Returns a file that will take this name when it is finished, whatever has the name by then.
+    /// Returns a file that will get the name `name` when it is finished, and replace any entry with that name.
     ///
     /// # Errors
-    /// When no file can be made here.
+    /// If no file can be created here.
     pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
         Replacement::new(self.clone(), single(name)?, mode)
     }
 
-    /// Writes a whole file by rename: it appears with all its bytes or not at all. A file of that name is replaced, and
-    /// no link is followed.
+    /// Writes a file atomically by rename. A file with the same name is replaced, and no link is followed.
     ///
     /// # Errors
-    /// When it can't be written.
+    /// If it cannot be written.
     pub fn write(&self, name: &OsStr, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement(name, None)?;
         file.write_all(bytes)?;
@@ -118,7 +117,7 @@ impl Folder {
 impl Drop for Replacement {
     fn drop(&mut self) {
         if !self.finished {
-            // A file that stays behind is hidden and useless.
+            // A file that remains is hidden and useless.
             let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
         }
     }

@@ -17,7 +17,7 @@ use fosssim_evidence::StepRulings;
 use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
-    kept::{KeptTrace, LONGEST},
+    kept::{KeptTrace, MAX_KEPT_BYTES},
     recorded,
     replay::{self, BothObservers, Options, Progress, Remark},
 };
@@ -105,7 +105,7 @@ impl Runner<'_> {
         watch.end(RunPart::Start);
         let (trace, trace_bytes) = self.trace_in(&left)?;
         // Not within the judging, which may panic: its trace is put aside then.
-        let mut kept = KeptTrace::new(LONGEST);
+        let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
         let mut told = ToldSteps(on_step);
         let heard = &mut BothObservers(&mut rulings, &mut told);

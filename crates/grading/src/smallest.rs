@@ -2,7 +2,7 @@
 use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::SmallestScene;
-use fosssim_judge::{Stop, kept::LONGEST, replay::Options};
+use fosssim_judge::{Stop, kept::MAX_KEPT_BYTES, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_model::{
     assignments::Assignment,
@@ -159,7 +159,7 @@ impl Shrinker<'_> {
     fn observe(&self, scene: &Scene, spent: &mut Duration) -> Result<Observation, String> {
         let xml = scene::write(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
-        let (trace, outcome) = self.runner.collect(self.program, &task, LONGEST)?;
+        let (trace, outcome) = self.runner.collect(self.program, &task, MAX_KEPT_BYTES)?;
         *spent += outcome.cpu;
         Ok(Observation { trace, ended: outcome.ended })
     }

@@ -1,4 +1,4 @@
-//! The kinds of files, found by their first bytes: nothing else of a submitted file is read for that.
+//! The kinds of files, found by their first bytes; no other bytes of a submitted file are read for that.
 
 /// The kind of a file, by its first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -11,25 +11,25 @@ pub enum FileKind {
     Other,
 }
 
-/// The archives that are unpacked.
+/// The archives that can be unpacked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ArchiveKind {
     /// A zip file.
     Zip,
     /// A tar file.
     Tar,
-    /// A tar file that gzip packed.
+    /// A tar file compressed by gzip.
     TarGz,
 }
 
-/// The archives that are unpacked, in words.
+/// The names of the archives that can be unpacked.
 pub const KNOWN: &str = ".zip, .tar.gz, .tar";
 
-/// The number of first bytes that show what a file is.
+/// The number of first bytes that determine the kind of a file.
 pub const START: usize = 512;
 
 impl FileKind {
-    /// Returns the kind of a file that begins with these bytes, at most [`START`] of them.
+    /// Returns the kind of a file that begins with `start`, which has at most [`START`] bytes.
     #[must_use]
     pub fn from_start(start: &[u8]) -> Self {
         match start {
@@ -42,7 +42,7 @@ impl FileKind {
     }
 }
 
-/// Describes a file that begins with these bytes, for a message about it.
+/// Returns a description of a file that begins with `start`, for messages.
 #[must_use]
 pub fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 17] = [
@@ -53,12 +53,12 @@ pub fn describe(start: &[u8]) -> String {
         (b"\x7fELF", "a program for Linux"),
         (b"#!", "a script"),
         (b"PK\x03\x04", "a zip archive"),
-        (b"\x1f\x8b", "a file packed by gzip"),
+        (b"\x1f\x8b", "a file compressed by gzip"),
         (b"Rar!", "a RAR archive"),
         (b"7z\xbc\xaf\x27\x1c", "a 7z archive"),
-        (b"\xfd7zXZ\0", "a file packed by xz"),
-        (b"BZh", "a file packed by bzip2"),
-        (b"\x28\xb5\x2f\xfd", "a file packed by zstd"),
+        (b"\xfd7zXZ\0", "a file compressed by xz"),
+        (b"BZh", "a file compressed by bzip2"),
+        (b"\x28\xb5\x2f\xfd", "a file compressed by zstd"),
         (b"!<arch>", "a library, or a Debian package"),
         (b"%PDF", "a PDF document"),
         (b"PK\x05\x06", "an empty zip archive"),

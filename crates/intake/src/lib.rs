@@ -1,8 +1,8 @@
-//! Intake of the command line and the service: archives of sources and of suites, and the kinds of files.
+//! Accepts files for the command line and the service: archives of sources and of suites, and the kinds of files.
 //!
-//! Nothing is unpacked from an archive that a usual packer would not make: no way out of the folder, no links, no
-//! devices, no two files of one name, no more bytes than allowed when unpacked. Files that file managers and build
-//! tools make by themselves are passed over.
+//! Archives are rejected if they contain entries that usual packers do not create: paths that leave the folder, links,
+//! devices, two files with the same name, or more bytes than allowed. Files that file managers and build tools create
+//! automatically are skipped.
 //!
 //! ```
 //! use fosssim_intake::{FileKind, describe};
@@ -29,32 +29,32 @@ use std::{
 };
 use thiserror::Error;
 
-/// The largest size of unpacked files.
+/// The maximum size of unpacked files.
 #[derive(Debug, Clone, Copy)]
 pub struct ArchiveLimits {
-    /// Bytes in all.
+    /// The total number of bytes.
     pub bytes: u64,
-    /// Files and folders.
+    /// The number of files and folders.
     pub entries: usize,
 }
 
-/// The greatest depth of its folders.
-const DEEPEST: usize = 64;
+/// The maximum depth of folders.
+const MAX_DEPTH: usize = 64;
 
-/// The most bytes of an archive's list of files, and of an archive's data about a single file in addition to its
-/// contents. A list of 20,000 usual names has 4 MiB.
-const LONGEST_LIST: u64 = 16 << 20;
-/// See [`LONGEST_LIST`].
-const LONGEST_HEADER: u64 = 1 << 20;
+/// The maximum size of an archive's list of files, in bytes. A list of 20,000 usual names has 4 MiB.
+const MAX_LIST_BYTES: u64 = 16 << 20;
+/// The maximum size of an archive's data about a single file in addition to its contents, in bytes.
+const MAX_HEADER_BYTES: u64 = 1 << 20;
 
-/// The bytes that may be read for a file in addition to its contents: headers, padding, and what is read ahead.
+/// The number of bytes that may be read for a file in addition to its contents: headers, padding, and read-ahead.
 const BESIDE: u64 = 64 << 10;
 
 impl ArchiveLimits {
-    /// Enough for a suite with all its scenes, and for a student's sources with a library in them.
+    /// Enough for a suite with all its scenes, and for a student's sources including a library.
     pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
-    /// Sets the limits for an archive of this size: what unpacks to 200 times as much is a bomb, unless it is small.
+    /// Adjusts the limits to an archive of `packed` bytes: an archive that unpacks to 200 times its size is a bomb,
+    /// unless it is small.
     fn for_size(self, packed: u64) -> Self {
         Self { bytes: self.bytes.min(packed.saturating_mul(200).max(50 << 20)), ..self }
     }
@@ -63,34 +63,34 @@ impl ArchiveLimits {
 /// The reason why an archive is not unpacked.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
-    /// No archive of a kind that is read.
-    #[error("looked for an archive ({KNOWN}), and found {0}")]
+    /// The file is not an archive of a supported kind.
+    #[error("expected an archive ({KNOWN}), but found {0}")]
     Unknown(String),
-    /// The archive can't be read to its end.
+    /// The archive cannot be read to its end.
     #[error("the archive is damaged: {0}")]
     Damaged(String),
-    /// A name leads out of the folder, or is none.
+    /// A name leads out of the folder, or is invalid.
     #[error("the archive has a file with a forbidden name: {0}")]
     Name(String),
-    /// An entry that is neither file nor folder.
+    /// An entry is neither a file nor a folder.
     #[error("the archive has {0}, which is neither a file nor a folder; links and devices are not allowed")]
     Kind(String),
-    /// Two files of one name.
+    /// Two files have the same name.
     #[error("the archive has {0} twice")]
     Twice(String),
-    /// Too many entries.
+    /// The archive has too many entries.
     #[error("the archive has more than {0} files")]
     Entries(usize),
-    /// Too many bytes.
-    #[error("the archive holds more than {0} bytes when it is unpacked")]
+    /// The archive has too many bytes.
+    #[error("the unpacked archive has more than {0} bytes")]
     Bytes(u64),
-    /// The archive's folders are nested too deep.
-    #[error("the archive has folders that are nested more than {DEEPEST} deep: {0}")]
+    /// The archive's folders are nested too deeply.
+    #[error("the archive has folders nested more than {MAX_DEPTH} levels deep: {0}")]
     Depth(String),
-    /// The archive can't be read, which is not its fault.
+    /// The archive file cannot be read, which is not the archive's fault.
     #[error("cannot read the archive: {0}")]
     Read(io::Error),
-    /// The folder can't be written.
+    /// The folder cannot be written.
     #[error("cannot unpack: {0}")]
     Folder(io::Error),
 }
@@ -98,22 +98,22 @@ pub enum ArchiveError {
 /// Reads an archive to its end and returns the paths of its files.
 ///
 /// # Errors
-/// Its fault.
+/// The fault of the archive.
 pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, None)
 }
 
-/// Unpacks an archive into an empty folder, and returns the paths of its files. Files that begin as programs are
-/// executable, whatever the archive's bits are: archives of Windows and of many web pages have no such bit.
+/// Unpacks an archive into an empty folder, and returns the paths of its files. Files that begin like programs become
+/// executable, whatever the archive's permission bits are, because archives from Windows and many web pages lack them.
 ///
 /// # Errors
-/// Its first fault; the folder may hold a part of it then.
+/// The first fault of the archive; the folder may then hold a part of it.
 pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, Some(folder))
 }
 
-/// Returns the folder that holds the submission in the folder of an unpacked archive with these files: many archives
-/// have one folder at their top, and nothing else.
+/// Returns the folder that holds the submission in an unpacked archive with the given files. Many archives have a
+/// single folder at their top.
 #[must_use]
 pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     let mut tops = files.iter().map(|file| file.components().next().filter(|_| file.components().count() > 1));
@@ -123,9 +123,9 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     }
 }
 
-/// Returns whether a file manager or a build tool puts a file or folder of this name there by itself, and not the
-/// person who hands it in: Finder's attributes and notes on windows, Explorer's on pictures, what CMake remembers of a
-/// build on another machine (which prevents a build here).
+/// Returns whether a file or folder with this name is created automatically by a file manager or a build tool: Finder's
+/// attributes and window settings, Explorer's picture caches, and CMake's cache of a build on another machine (which
+/// prevents a build here).
 #[must_use]
 pub fn is_litter(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
@@ -134,7 +134,7 @@ pub fn is_litter(name: &OsStr) -> bool {
     NAMES.contains(&name) || name.starts_with(b"._")
 }
 
-/// An archive being walked through.
+/// The state of a walk through an archive.
 struct Walk<'a> {
     limits: ArchiveLimits,
     /// The folder for the archive's files; `None` if the archive is only checked.
@@ -165,15 +165,15 @@ fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
-/// Returns the number of entries that a zip archive claims, by its end record (APPNOTE 4.3.16), or by the one of large
+/// Returns the number of entries that a zip archive claims, from its end record (APPNOTE 4.3.16), or from that of large
 /// archives (4.3.14) if the end record refers to it.
 fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
-    /// Both records, the pointer between them, and the longest comment behind them.
-    const LONGEST: u64 = 56 + 20 + 22 + 0xffff;
+    /// The size of both records, the pointer between them, and the longest comment after them.
+    const MAX_END_BYTES: u64 = 56 + 20 + 22 + 0xffff;
     let size = file.seek(SeekFrom::End(0))?;
-    file.seek(SeekFrom::Start(size.saturating_sub(LONGEST)))?;
+    file.seek(SeekFrom::Start(size.saturating_sub(MAX_END_BYTES)))?;
     let mut end = Vec::new();
-    file.take(LONGEST).read_to_end(&mut end)?;
+    file.take(MAX_END_BYTES).read_to_end(&mut end)?;
     file.seek(SeekFrom::Start(0))?;
     let last = |magic: &[u8; 4], size: usize| end.windows(size).rfind(|record| record.starts_with(magic));
     let Some(record) = last(b"PK\x05\x06", 22) else { return Ok(None) };
@@ -192,14 +192,14 @@ fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Reads an archive's data about the next file.
+/// Reads an archive's header of the next file.
 fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     let mut header = Vec::new();
-    entry.take(LONGEST_HEADER + 1).read_to_end(&mut header).map_err(describe_damage)?;
-    if header.len() as u64 > LONGEST_HEADER { Err(describe_damage("a header is too long")) } else { Ok(header) }
+    entry.take(MAX_HEADER_BYTES + 1).read_to_end(&mut header).map_err(describe_damage)?;
+    if header.len() as u64 > MAX_HEADER_BYTES { Err(describe_damage("a header is too long")) } else { Ok(header) }
 }
 
-/// Returns a name for a message.
+/// Returns a name escaped for messages.
 fn escape_name(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
@@ -218,16 +218,16 @@ impl Walk<'_> {
 
     fn walk_zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let announced = count_announced(&mut file).map_err(ArchiveError::Read)?;
-        // The library reads the list of all files before it shows one.
+        // The library reads the list of all files before it returns one.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
         let packed = file.metadata().map_err(ArchiveError::Read)?.len();
-        let meter = Meter::new(LONGEST_LIST);
+        let meter = Meter::new(MAX_LIST_BYTES);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
         // Files may overlap in the archive, and be empty however long they are.
         meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
-        // The library keeps one entry of each name, and the intended one would be unclear.
+        // The library keeps one entry per name, and the intended one would be unclear.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
         }
@@ -235,7 +235,7 @@ impl Walk<'_> {
             let mut entry = archive.by_index(index).map_err(describe_damage)?;
             let name = entry.name_raw().to_vec();
             let mode = entry.unix_mode();
-            // The file type in Unix permissions: none given, a file or a folder.
+            // The file type in Unix permissions: none, a file or a folder.
             if mode.is_some_and(|mode| !matches!(mode & 0o170_000, 0 | 0o100_000 | 0o040_000)) {
                 return Err(ArchiveError::Kind(escape_name(&name)));
             }
@@ -251,7 +251,7 @@ impl Walk<'_> {
     fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
         let meter = Meter::new(self.limits.bytes.saturating_add(BESIDE * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
-        // The name that a header of its own gives the next file. The library would read such a header whole.
+        // The name that a separate header gives the next file. The library would read such a header completely.
         let mut long_name = None;
         for entry in archive.entries().map_err(describe_damage)?.raw(true) {
             let mut entry = entry.map_err(describe_damage)?;
@@ -268,7 +268,7 @@ impl Walk<'_> {
                     let said = said.map_err(describe_damage)?;
                     match said.key_bytes() {
                         b"path" => long_name = Some(said.value_bytes().to_vec()),
-                        // Files have it that are larger than any may be here.
+                        // Only files larger than allowed have this field.
                         b"size" => return Err(ArchiveError::Bytes(self.limits.bytes)),
                         _ => {}
                     }
@@ -282,7 +282,7 @@ impl Walk<'_> {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
                     self.unpack_file(&name, executable, &mut entry)?;
                 }
-                // Describes the archive, and is no entry of it.
+                // The header describes the archive, and is not an entry.
                 tar::EntryType::XGlobalHeader => {}
                 _ => return Err(ArchiveError::Kind(escape_name(&name))),
             }
@@ -298,7 +298,7 @@ impl Walk<'_> {
         }
         let refused = || ArchiveError::Name(escape_name(name));
         let text = std::str::from_utf8(name).map_err(|_| refused())?;
-        // A backslash is a separator to some programs and part of a name to others.
+        // A backslash is a separator for some programs and part of a name for others.
         if text.is_empty() || text.len() > 1000 || text.contains(['\\', ':']) || text.chars().any(char::is_control) {
             return Err(refused());
         }
@@ -310,13 +310,13 @@ impl Walk<'_> {
                 _ => return Err(refused()),
             }
         }
-        if path.components().count() > DEEPEST {
+        if path.components().count() > MAX_DEPTH {
             return Err(ArchiveError::Depth(escape_name(name)));
         }
         Ok(path)
     }
 
-    /// Notes the folders above a file; none of these may be a file.
+    /// Notes the folders above a file; none of them may be a file.
     fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
             if self.seen.contains(folder) {
@@ -365,8 +365,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Copies a file and returns its kind. The unpacked bytes are counted: an archive may claim anything about its
-    /// sizes.
+    /// Copies a file and returns its kind. The unpacked bytes are counted, because an archive may claim any sizes.
     fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
         const AT_ONE_GO: u64 = 64 << 10;
         let mut chunk = Vec::new();
@@ -439,11 +438,11 @@ mod tests {
         let bomb = || zip(&[("zeros", None, &vec![0; (50 << 20) + 1])]);
         let told = look_through(bomb(), ArchiveLimits::USUAL).unwrap_err().to_string();
         assert!(told.contains("more than 52428800 bytes"), "{told}");
-        let deep = zip(&[(&"d/".repeat(DEEPEST + 1), None, b"")]);
+        let deep = zip(&[(&"d/".repeat(MAX_DEPTH + 1), None, b"")]);
         assert!(matches!(look_through(deep, ArchiveLimits::USUAL), Err(ArchiveError::Depth(_))));
     }
 
-    /// Returns an archive with an entry of this kind and size, and then a file.
+    /// Returns an archive with an entry of the given kind and size, followed by a file.
     fn tar(kind: tar::EntryType, size: usize, path: &str) -> File {
         let mut builder = tar::Builder::new(Vec::new());
         let mut header = tar::Header::new_gnu();
@@ -478,7 +477,7 @@ mod tests {
     #[test]
     fn files_that_lie_in_one_another_are_read_so_often_only() {
         const FILES: u16 = 200;
-        // A mebibyte of blocks that hold nothing.
+        // One mebibyte of empty blocks.
         let content = [&[0, 0, 0, 0xff, 0xff].repeat(200_000)[..], &[3, 0]].concat();
         let fields = |numbers: &[(u64, usize)]| -> Vec<u8> {
             numbers.iter().flat_map(|(number, size)| number.to_le_bytes()[..*size].to_vec()).collect()

@@ -1,15 +1,15 @@
-//! A limit for reading, for all readers together: an archive can't make its readers work forever.
+//! Limits reading for all readers together, so that an archive cannot occupy its readers forever.
 use std::{
     cell::Cell,
     io::{self, Read, Seek, SeekFrom},
     rc::Rc,
 };
 
-/// The bytes that may still be read.
+/// The number of bytes that may still be read.
 #[derive(Debug, Clone)]
 pub(crate) struct Meter(Rc<Cell<u64>>);
 
-/// A reader that fails where the bytes of its meter are used up.
+/// A reader that fails when the bytes of its meter are used up.
 #[derive(Debug)]
 pub(crate) struct MeteredReader<R> {
     inner: R,
@@ -17,17 +17,17 @@ pub(crate) struct MeteredReader<R> {
 }
 
 impl Meter {
-    /// Creates a limit of this many bytes.
+    /// Creates a limit of `bytes` bytes.
     pub(crate) fn new(bytes: u64) -> Self {
         Self(Rc::new(Cell::new(bytes)))
     }
 
-    /// Sets the limit to this many bytes from now on.
+    /// Sets the remaining limit to `bytes` bytes.
     pub(crate) fn set(&self, bytes: u64) {
         self.0.set(bytes);
     }
 
-    /// Makes a reader count for this meter.
+    /// Returns a reader that counts for this meter.
     pub(crate) fn reader<R>(&self, inner: R) -> MeteredReader<R> {
         MeteredReader { inner, meter: self.clone() }
     }
@@ -37,7 +37,7 @@ impl<R: Read> Read for MeteredReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.inner.read(buffer)?;
         let Some(left) = self.meter.0.get().checked_sub(read as u64) else {
-            return Err(io::Error::other("reading it takes too long for its content"));
+            return Err(io::Error::other("reading the archive takes too much work for its content"));
         };
         self.meter.0.set(left);
         Ok(read)

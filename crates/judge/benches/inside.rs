@@ -1,4 +1,4 @@
-//! The cost of recording and judging inside one process, on one thread: the least time of some rounds.
+//! The cost of recording and judging inside one process, on one thread: the minimum time of several rounds.
 //!
 //! `cargo bench -p fosssim-judge --bench inside -- [rounds] [what] SCENE...` prints a line per scene and the sum.
 //! `what` is `all`, or one of `step` (without an observer), `record` (into nothing), `parity` and `fair` (the scene's
@@ -7,7 +7,7 @@
 //! judged by both books).
 //!
 //! `... --bench inside -- instructions` counts instructions under callgrind, which no other load on the machine
-//! changes, and shows them beside those of `instructions.txt`; with `store` behind it they are written there.
+//! changes, and compares them with the counts in `instructions.txt`; with `store` the counts are written there.
 //!
 //! `... -- growth` shows the cost of a pair and the memory from 10 to 3,000 particles, `... -- crowd` the instructions
 //! of a ball and step of a penalty scene from 100 to 100,000 balls, `... -- hits` those of scenes with many hits in a
@@ -94,7 +94,7 @@ fn measure(scene: &Scene, rounds: u32, what: &str, given: Option<Vec<u8>>) -> Ve
     times
 }
 
-/// The least time of some rounds, in milliseconds. One thread works and waits for nothing, so this is processor time.
+/// The minimum time of several rounds, in milliseconds. The single thread never waits, so this is processor time.
 fn least(rounds: u32, mut work: impl FnMut()) -> f64 {
     let round = |_| {
         let begin = Instant::now();
@@ -131,7 +131,7 @@ fn scaled(scene: &Scene, trace: &[u8], factor: f64) -> Vec<u8> {
     with(scene, trace, |coefficient, _| factor * coefficient)
 }
 
-/// The trace with a rounding more in every third coefficient.
+/// The trace with an additional rounding in every third coefficient.
 fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     with(
         scene,
@@ -142,7 +142,7 @@ fn rounded(scene: &Scene, trace: &[u8]) -> Vec<u8> {
     )
 }
 
-/// The trace with coefficients that follow from its own and their numbers in a record.
+/// The trace with coefficients computed from each coefficient and its number in its record.
 fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) -> Vec<u8> {
     let layout = Layout::for_scene(scene);
     let (mut reader, mut writer) = (Reader::from_slice(trace, layout), Writer::new(Vec::new(), layout));
@@ -156,7 +156,7 @@ fn with(scene: &Scene, trace: &[u8], coefficient: impl Fn(f64, usize) -> f64) ->
     writer.finish().expect("memory").0
 }
 
-/// Instructions of single pieces of work, beside those that were stored.
+/// Instructions of single pieces of work, compared with the stored counts.
 fn instructions(store: bool) {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../assets/t2m2");
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/instructions.txt");
@@ -180,7 +180,7 @@ fn instructions(store: bool) {
     }
 }
 
-/// The instructions of one round of work on a scene, with the start of this program.
+/// The instructions of one round of work on a scene, including the start of this program.
 fn counted(what: &str, scene: &str) -> f64 {
     let program = std::env::current_exe().expect("this program");
     let mut command = Command::new("valgrind");
@@ -191,7 +191,7 @@ fn counted(what: &str, scene: &str) -> f64 {
     count.split_whitespace().next().and_then(|word| word.parse().ok()).expect("a number")
 }
 
-/// The cost of a step of a penalty scene for each of more and more balls at one density.
+/// The cost of a step of penalty scenes with increasing numbers of balls at one density.
 fn crowd() {
     println!("| balls | instructions of a step, a ball |\n|---:|---:|");
     let file = std::env::temp_dir().join(format!("fosssim-crowd-{}.xml", std::process::id()));
@@ -226,7 +226,7 @@ fn box_of(balls: u32, steps: u32) -> String {
     xml + "</scene>"
 }
 
-/// The cost of recording scenes of which each step has several hits.
+/// The cost of recording scenes with several hits in each step.
 fn hits() {
     println!("| scene | steps | hits | trace, MB | record, millions of instructions |\n|---|---:|---:|---:|---:|");
     let file = std::env::temp_dir().join(format!("fosssim-hits-{}.xml", std::process::id()));
@@ -288,7 +288,7 @@ fn ring() -> String {
     xml + r#"<edge i="8" j="9" radius="0.1"/></scene>"#
 }
 
-/// The cost of a pair, and the most memory that was used so far, in scenes of more and more particles.
+/// The cost of a pair, and the peak memory so far, in scenes with increasing numbers of particles.
 fn growth() {
     println!(
         "| particles | pairs in a pass | record, ns a pair | grade, ns a pair | trace, MB | most memory so far, MB |"
@@ -298,7 +298,7 @@ fn growth() {
         let scene = original::read(heap(particles).as_bytes()).expect("a scene").scene;
         let edges = scene.edges.len();
         let pairs = particles * (particles - 1) / 2 + (particles - 2) * edges + particles * scene.half_planes.len();
-        // The trace is made as it is read: neither is ever whole in memory.
+        // The trace is judged while it is recorded, so it is never completely in memory.
         let per_pair = |time: f64| time * 1e6 / pairs as f64 / f64::from(scene.steps());
         let rounds = if particles < 1000 { 5 } else { 2 };
         let recorded = least(rounds, || _ = record(&scene, std::io::sink()));
@@ -316,7 +316,7 @@ fn growth() {
     }
 }
 
-/// Balls in rows above a floor and beside a wall, every tenth at the end of an edge, that begin to fall.
+/// Balls in rows above a floor and next to a wall, every tenth at the end of an edge. They begin to fall.
 fn heap(particles: usize) -> String {
     let mut xml = String::from(
         r#"<scene><duration time="0.03"/><integrator type="symplectic-euler" dt="0.01"/>
@@ -334,7 +334,7 @@ fn heap(particles: usize) -> String {
     xml + "</scene>"
 }
 
-/// The most memory that this process has had, in megabytes.
+/// The peak memory of this process, in megabytes.
 fn most_memory() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").expect("Linux");
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:")).expect("a peak");

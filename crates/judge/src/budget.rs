@@ -1,21 +1,22 @@
-//! Limits the work that judging one trace may take.
+//! Limits the work of judging one trace.
 //!
 //! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute. States from
 //! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds. That is
 //! thousands of times the cost of the scene's own run, and the fair rules repeat such steps. Subnormal numbers slow
-//! processors down as well, and root searches and Newton's method may take many steps. All this is counted
+//! processors down as well, and root searches and Newton's method may take many steps. The work is counted
 //! ([`Simulation::work`]) and not measured by a clock: the same bytes have the same verdict on every machine.
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Observer, RootSearch, Simulation, StepError, least_work, pairs},
 };
 
-/// The work that every trace may cause, however simple its scene is: about a tenth of a second's.
+/// The work that every trace may cause, however simple its scene is. It takes about a tenth of a second.
 pub(crate) const FLOOR: u64 = 1_000_000;
 
-/// Beyond that, this multiple of the scene's own run by the original's rules ...
+/// The multiple of the scene's own run that the original's rules may take beyond the floor.
 const PARITY: u64 = 10;
-/// ... and where the fair rules may repeat steps: at most 26 times, of which the trace of a wrong program needs 11.
+/// The multiple for the fair rules, which may repeat steps. They repeat a step at most 26 times; the trace of a wrong
+/// program needs 11.
 const FAIR: u64 = 40;
 
 /// The work that is left for one trace.
@@ -24,14 +25,14 @@ pub struct Budget<'a> {
     scene: &'a Scene,
     factor: u64,
     rest: u64,
-    /// The work that was allowed for the scene without knowing its own run.
+    /// The work that was allowed before the scene's own run was known.
     at_least: u64,
     is_wide: bool,
 }
 
 impl<'a> Budget<'a> {
-    /// Creates the budget for judging a trace of this scene by the original's rules, or by the fair ones: each book has
-    /// its own. Explaining and showing may take as much as the original's rules.
+    /// Creates the budget for judging a trace of `scene` by the original's rules, or by the fair rules if `fair`. Each
+    /// rule book has a separate budget. Explaining and showing may take as much as the original's rules.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR } else { PARITY };
@@ -39,19 +40,19 @@ impl<'a> Budget<'a> {
         Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
     }
 
-    /// Creates a budget with another floor: every trace may cause this much work, and nothing is allowed before the
-    /// scene's own run is known.
+    /// Sets the floor, which is the work that every trace may cause. Nothing is allowed before the scene's own run is
+    /// known.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
         Self { rest: floor, at_least: 0, ..self }
     }
 
-    /// Returns the work that is left.
+    /// Returns the remaining work.
     #[must_use]
     pub fn rest(&self) -> u64 {
         self.rest
     }
 
-    /// Takes `work` away, and returns false if there is not enough left.
+    /// Subtracts `work` from the remaining work, and returns false if too little remains.
     pub fn spend(&mut self, work: u64) -> bool {
         if work > self.rest {
             self.widen();
@@ -64,7 +65,7 @@ impl<'a> Budget<'a> {
     /// Simulates one more step from the trace's own state.
     ///
     /// # Errors
-    /// [`StepError`]; of kind `Work`, when nothing is left.
+    /// [`StepError`] of kind `Work`, if no work remains.
     pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
         if self.rest < (FLOOR.saturating_add(self.at_least)) / 2 {
             self.widen();
@@ -87,8 +88,9 @@ impl<'a> Budget<'a> {
     }
 }
 
-/// Returns the least work of the scene's own run: a detection pass and an iteration of Newton's method for each step,
-/// if there are any. Nearly all traces stay below the allowed multiple of this, and the scene need not be run.
+/// Returns a lower bound for the work of the scene's own run: a detection pass and an iteration of Newton's method for
+/// each step, if there are any. Nearly all traces stay below the allowed multiple of this bound, so the scene need not
+/// be run.
 fn least_of_scene(scene: &Scene) -> u64 {
     let pass = match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => pairs(scene).count() as u64,
@@ -120,8 +122,8 @@ mod tests {
         samples::{changed_trace, run, scene, write_frames},
     };
 
-    /// Returns a ball that moves between two posts; where they overlap it, each round of impulses throws it from one to
-    /// the other.
+    /// Returns a scene in which a ball moves between two posts. Where the posts overlap the ball, each round of
+    /// impulses throws it from one to the other.
     fn posts(start: f64, rounds: u32) -> Scene {
         let post = |x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="1" radius="0.2"/>"#);
         scene(&format!(
@@ -133,7 +135,7 @@ mod tests {
         ))
     }
 
-    /// Returns a trace of that scene whose every step but the first begins between the posts.
+    /// Returns a trace of `scene` in which every step except the first begins between the posts.
     fn squeezed(scene: &Scene) -> Vec<u8> {
         changed_trace(scene, |frames| {
             for frame in &mut frames[1..] {
@@ -148,7 +150,7 @@ mod tests {
         judge_within(usize::MAX, Some(floor), scene, &mut trace, &options, &mut ())
     }
 
-    /// Returns the step at which judging was given up.
+    /// Returns the step at which judging stopped early.
     fn given_up(outcome: &Outcome) -> Option<u32> {
         match outcome.stop {
             Some(Stop::Step(StepError::Work { step })) => Some(step),
@@ -206,7 +208,7 @@ mod tests {
         assert_eq!(ends[0], ends[2]);
     }
 
-    /// Elimination is all that such a scene takes, and running it once more would double the time of a grading.
+    /// Such a scene takes only elimination, and a second run would double the time of a grading.
     #[test]
     fn an_implicit_scene_is_not_run_to_allow_its_own_work() {
         let particles = (0..40).map(|x| format!(r#"<particle m="1" px="{x}" py="0" vx="0" vy="0" fixed="0"/>"#));

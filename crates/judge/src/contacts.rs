@@ -1,10 +1,10 @@
-//! Finds a record's impulses for a pair: a trace may log a million, which must not all be searched for each pair.
+//! Finds a record's impulses for a pair. A trace may log a million impulses, too many to search for each pair.
 use fosssim_model::{sim::Pair, trace::LoggedImpulse};
 
-/// Kind and numbers of a pair as they are logged.
+/// The kind and the numbers of a pair, as logged.
 pub(crate) type PairKey = (i32, i32, i32);
 
-/// Returns the key of a pair; `None` if the format has no numbers for it, so that no trace logs it.
+/// Returns the key of `pair`; `None` if the format has no numbers for the pair, so no trace can log it.
 pub(crate) fn key(pair: Pair) -> Option<PairKey> {
     Some((pair.kind.code(), i32::try_from(pair.first).ok()?, i32::try_from(pair.second).ok()?))
 }
@@ -26,7 +26,7 @@ impl Contacts {
         Self(keys)
     }
 
-    /// Returns the numbers of the impulses about a pair, in their order.
+    /// Returns the numbers of the impulses of a pair, in the order of the record.
     pub fn about(&self, key: PairKey) -> impl Iterator<Item = usize> {
         let begin = self.0.partition_point(|(other, _)| *other < key);
         self.0[begin..].iter().take_while(move |(other, _)| *other == key).map(|(_, index)| *index)

@@ -1,11 +1,11 @@
-//! The beginning of a trace that can be read only once, kept while it is read: explanations and pictures read it again.
+//! Keeps the beginning of a trace that can be read only once, because explanations and pictures read it again.
 use std::io::{self, Read};
 
-/// The greatest number of bytes that are kept. The course's largest trace has 18 MB. Lowered, mistakes in longer traces
-/// are not explained; raised, each job of a class may take more memory.
-pub const LONGEST: usize = 64 << 20;
+/// The maximum number of kept bytes. The course's largest trace has 18 MB. A lower limit leaves mistakes in longer
+/// traces unexplained; a higher limit lets each job of a class take more memory.
+pub const MAX_KEPT_BYTES: usize = 64 << 20;
 
-/// The beginning of a trace. It stays whole when judging panics.
+/// The kept beginning of a trace. It stays complete if judging panics.
 #[derive(Debug)]
 pub struct KeptTrace {
     bytes: Vec<u8>,
@@ -15,7 +15,7 @@ pub struct KeptTrace {
 }
 
 impl KeptTrace {
-    /// Creates a store for at most `most` bytes, which is next to nothing for a trace that is not needed again.
+    /// Creates a store for at most `most` bytes; a small number suits a trace that is not needed again.
     #[must_use]
     pub const fn new(most: usize) -> Self {
         Self { bytes: Vec::new(), most, has_ended: false, is_cut: false }
@@ -26,20 +26,20 @@ impl KeptTrace {
         KeepingReader { kept: self, inner: trace }
     }
 
-    /// Returns the bytes that were kept.
+    /// Returns the kept bytes.
     #[must_use]
     pub fn bytes(&self) -> &[u8] {
         &self.bytes
     }
 
-    /// Returns whether the kept bytes are all of the trace.
+    /// Returns whether the whole trace was kept.
     #[must_use]
     pub const fn is_whole(&self) -> bool {
         self.has_ended && !self.is_cut
     }
 }
 
-/// A reader whose bytes are kept.
+/// A reader that keeps the bytes of the trace.
 #[derive(Debug)]
 pub struct KeepingReader<'k, R> {
     kept: &'k mut KeptTrace,

@@ -1,8 +1,8 @@
-//! The verdict on one trace: the original's rules (`parity`), the fair ones (`fair`), findings, and where trace and
-//! reference first differ.
+//! The verdict on one trace: the original's rules (`parity`), the fair ones (`fair`), findings, and the first
+//! difference between trace and reference.
 //!
-//! Knows nothing of processes and reports; it takes a scene and a reader, and yields typed findings. The rules are
-//! those of `oracle-behavior.md`, sections 4 to 6.
+//! Does not use processes or reports; takes a scene and a reader, and returns typed findings. The rules are those of
+//! `oracle-behavior.md`, sections 4 to 6.
 //!
 //! ```
 //! use fosssim_judge::{Book, Ruling, replay};
@@ -28,7 +28,6 @@
 
 pub mod budget;
 mod contacts;
-mod differing;
 pub mod fair;
 pub mod kept;
 mod options;
@@ -40,8 +39,8 @@ pub mod replay;
 mod samples;
 pub mod study;
 mod tally;
+mod wrong_coefficients;
 
-pub use differing::{differing, factor};
 pub use fosssim_findings::{
     Book, BookFindings, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Outcome, Overall, PairWords, Part,
     PassWords, PolynomialPlace, Power, RecordPart, RescaledCoefficient, Residuals, Role, Rules, Ruling, Stop,
@@ -49,3 +48,4 @@ pub use fosssim_findings::{
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::Unreadable;
+pub use wrong_coefficients::{differing, factor};

@@ -1,7 +1,7 @@
 //! One decision of `simple` handling in detail: overlap and approach at the end of the step (collisions.md 6).
 //!
-//! Judges nothing. A decision is certain if it stays the same in runs from states that are off by some roundings, as
-//! the fair rules try it.
+//! Judges nothing. A decision is certain if it is the same in runs from states that differ by a few rounding errors, as
+//! in the fair rules.
 use crate::fair::{PERTURBED_RUNS, perturb};
 use fosssim_model::{
     scene::Scene,
@@ -14,23 +14,23 @@ use fosssim_num::vector::{Vec2, at, length};
 pub struct OverlapStudy {
     /// The pair, with its motion within the step.
     pub motion: PairMotion,
-    /// The velocities of its bodies at the check, after the responses to earlier pairs: of the particle, and of the
-    /// second particle or of the nearest point of the edge. A half-plane rests.
+    /// The velocities of its bodies at the check, after the responses to earlier pairs: that of the particle, and that
+    /// of the second particle or of the nearest point of the edge. A half-plane rests.
     pub velocities: [Vec2; 2],
-    /// The nearest point of an edge, from 0 at its first end to 1 at its second.
+    /// The position of the nearest point on an edge, from 0 at its first end to 1 at its second.
     pub alpha: Option<f64>,
-    /// From the first object to the nearest point of the second, not normalized.
+    /// The vector from the first object to the nearest point of the second, not normalized.
     pub normal: Vec2,
     /// The distance at which the objects touch: the sum of their radii.
     pub reach: f64,
-    /// Whether the reference answers with a response.
+    /// Whether the reference responds to the overlap.
     pub collides: bool,
-    /// Whether round-off can't change that.
+    /// Whether round-off cannot change the decision.
     pub is_certain: bool,
 }
 
 impl OverlapStudy {
-    /// Examines a pair in a step that starts from `before`; `None` if the scene never checks it.
+    /// Examines a pair in a step that starts from `before`; `None` if the scene never checks the pair.
     ///
     /// # Errors
     /// [`StepError`], if the step has no result.
@@ -51,20 +51,20 @@ impl OverlapStudy {
         Ok(Some(study))
     }
 
-    /// Returns the distance of the objects.
+    /// Returns the distance between the objects.
     #[must_use]
     pub fn distance(&self) -> f64 {
         length(self.normal)
     }
 
-    /// Returns the speed at which they approach, times the distance: above zero if they approach.
+    /// Returns the approach speed of the objects times their distance; positive if they approach.
     #[must_use]
     pub fn approach(&self) -> f64 {
         (self.velocities[0] - self.velocities[1]).dot(&self.normal)
     }
 }
 
-/// Notes a pair when it is checked.
+/// An observer that records a pair when it is checked.
 struct PairWatch<'a> {
     scene: &'a Scene,
     pair: Pair,

@@ -5,20 +5,20 @@ use super::{
 };
 use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 
-/// Observes the progress of judging, in the order of the steps whatever the number of threads. Methods do nothing by
+/// Observes the progress of judging, in the order of the steps, whatever the number of threads. Methods do nothing by
 /// default.
 pub trait Progress {
-    /// Reports that the initial record has been read and judging begins.
+    /// Observes the start of judging, after the initial record has been read.
     fn begins(&mut self) {}
-    /// Reports that a step is about to be judged (from 1).
+    /// Observes that a step is about to be judged; steps count from 1.
     fn step_begins(&mut self, _step: u32) {}
-    /// Reports that a step has been judged.
+    /// Observes that a step has been judged.
     fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
-    /// Reports that the step holds a fault; not called for the rest of damaged records.
+    /// Observes a step with a fault; not called for the rest of damaged records.
     fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
 }
 
-/// A step in which a book has found something.
+/// A step in which a rule book has found something.
 #[derive(Debug, Clone, Copy)]
 pub struct WrongStep<'a> {
     /// The step, from 1.
@@ -26,7 +26,7 @@ pub struct WrongStep<'a> {
     /// The findings by the original's rules.
     pub parity: StepFindings<'a>,
     /// The findings by the fair rules; empty if they were not requested. Findings that only the whole trace shows, such
-    /// as mixed forms, are not among them.
+    /// as mixed forms, are not included.
     pub fair: StepFindings<'a>,
 }
 
@@ -35,7 +35,7 @@ pub struct WrongStep<'a> {
 pub struct StepFindings<'a> {
     /// The first finding of each kind, in the order in which they were made.
     pub firsts: &'a [Finding],
-    /// The number of them of each kind besides.
+    /// The number of further findings of each kind.
     pub more: FindingCounts,
 }
 
@@ -66,20 +66,20 @@ impl Progress for BothObservers<'_> {
     }
 }
 
-/// A line that the original prints about a step; in its order.
+/// A line that the original prints about a step, in the original's order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Remark {
     /// A collision that the trace lacks.
     Missed(Impulse),
     /// A collision that the trace should not have.
     Superfluous(LoggedImpulse),
-    /// A collision with another normal.
+    /// A collision with a wrong normal.
     WrongNormal {
-        /// The trace's.
+        /// The trace's impulse.
         actual: LoggedImpulse,
-        /// The reference's.
+        /// The reference's impulse.
         expected: Impulse,
     },
-    /// A number of findings of one kind about polynomials, one after the other.
+    /// A number of consecutive findings of one kind about polynomials.
     Polynomials(FindingKind, u32),
 }

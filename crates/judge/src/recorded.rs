@@ -1,9 +1,9 @@
-//! Judging against a recording instead of the reference simulator: frame by frame, by the same tolerances.
+//! Judges a trace against a recording instead of the reference simulator: frame by frame, with the same tolerances.
 //!
-//! Unlike lock step, errors accumulate here: after the first difference the two runs are two different runs, and later
-//! differences prove little. However, nothing is taken over from the submission, so wrong initial states, responses and
-//! integrators show, which the original's rules let pass (oracle-behavior.md 8.1 to 8.3). Both frames of a step are
-//! compared, and the initial record.
+//! Unlike in lock step, errors accumulate: after the first difference the two runs diverge, and later differences prove
+//! little. However, the submission's states are not used, so wrong initial states, responses and integrators are found
+//! that the original's rules accept (oracle-behavior.md 8.1 to 8.3). Both frames of a step are compared, and the
+//! initial record.
 use super::{
     finding::{PolynomialPlace, Role},
     outcome::{Outcome, Stop},
@@ -17,19 +17,20 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// The reason why a trace can't be judged against a recording: always the recording's fault.
+/// The reason why a trace cannot be judged against a recording. The recording is always at fault.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the recording can't be used: frame {frame}, byte {offset}: {message}; record it again")]
+#[error("the recording is damaged: frame {frame}, byte {offset}: {message}; record it again")]
 pub struct RecordingError {
     /// The frame, from 0.
     pub frame: u64,
-    /// Byte offset.
+    /// The byte offset of the damage.
     pub offset: u64,
-    /// The damage in words.
+    /// A description of the damage.
     pub message: String,
 }
 
-/// Judges a trace against the recording of the same scene. The original's messages do not apply, so remarks are empty.
+/// Judges a trace against the recording of the same scene. The original's messages do not apply, so there are no
+/// remarks.
 ///
 /// # Errors
 /// When the recording is damaged or cut short.
@@ -42,7 +43,7 @@ pub fn judge<T: Read, R: Read>(
     compare(scene, &mut trace, &mut recording, progress)
 }
 
-/// Returns the body of [`judge`], compiled once.
+/// Compares the frames for [`judge`]; compiled once for all readers.
 fn compare(
     scene: &Scene,
     trace: &mut dyn Read,
@@ -87,7 +88,7 @@ fn compare(
         if !damaged {
             result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
         }
-        // The initial record is no step.
+        // Record 0 is the initial state, not a step.
         if result.counts.total() > 0 && step > 0 && wrong_step != Some(step) && !damaged {
             wrong_step = Some(step);
             outcome.parity.findings.wrong_steps += 1;
@@ -104,7 +105,7 @@ fn compare(
     Ok(outcome)
 }
 
-/// Returns an impulse of a sound recording.
+/// Returns an impulse of an undamaged recording.
 fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
     Some(Impulse { pair: logged.pair()?, normal: logged.normal, time: logged.time })
 }
@@ -123,7 +124,7 @@ impl RecordPlaces {
     /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not show where the impulse
     /// rounds end, so passes are counted as rounds.
     fn at(&self, index: usize) -> PolynomialPlace {
-        // A scene without pairs has no recording with polynomials, so no reader sees this place.
+        // A scene without pairs has no recording with polynomials, so this place is never shown.
         let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
         let (number, pair, which) = self.pairs.polynomial(index).unwrap_or(nobody);
         let round = u32::try_from(number).unwrap_or(u32::MAX);

@@ -1,8 +1,8 @@
-//! Reads the trace step by step, has the steps judged in batches, and puts the results together in their order.
+//! Reads the trace step by step, judges the steps in batches, and combines the results in order.
 //!
-//! Once a step's frames are in memory the step depends on nothing else: the reference starts from the submission's own
-//! state (oracle-behavior.md 4.2). Therefore the next batch is read while one is judged on all threads. What is
-//! reported, and in which order, does not depend on the number of threads.
+//! Judging a step needs only its frames, because the reference starts from the submission's own state
+//! (oracle-behavior.md 4.2). The next batch is read while one is judged on all threads. The reports and their order do
+//! not depend on the number of threads.
 mod contest;
 mod workers;
 
@@ -29,14 +29,14 @@ use fosssim_model::{
 use std::{io::Read, sync::Mutex};
 use workers::Workers;
 
-/// A batch is full when its frames hold this many bytes ...
+/// The size of the frames, in bytes, at which a batch is full.
 const BATCH_BYTES: usize = 1 << 18;
-/// ... but next to a batch with more than this, no other is read: one record in memory is enough then.
+/// The size in bytes above which no other batch is read next to a batch, so that only one large record is in memory.
 const LARGE_BATCH_BYTES: usize = 1 << 24;
-/// ... or this many steps ...
+/// The number of steps at which a batch is full.
 const BATCH_STEPS: usize = 256;
 
-/// One step as read, and what judging it yields.
+/// One step as read, and the result of judging it.
 #[derive(Debug, Default)]
 struct StepSlot {
     /// The step's number, from 1.
@@ -44,33 +44,33 @@ struct StepSlot {
     /// The offset of the step's end record.
     last: u64,
     before: State,
-    /// The order of bodies from which the reference begins, in a contest.
+    /// The order of bodies with which the reference begins the step, in a contest.
     order: SweepOrder,
-    /// The mid record; without its lists, unless the fair rules want them.
+    /// The mid record; without its lists, unless the fair rules need them.
     mid: LenientFrame,
     end: LenientFrame,
     damage: Option<Damage>,
     result: StepResult,
     fair: StepJudgement,
-    /// Whether the fair rules have to know the reference's own run.
+    /// Whether the fair rules need the reference's own run.
     is_extraordinary: bool,
-    /// Whether they must be known before the step is judged.
-    is_put_off: bool,
+    /// Whether the reference's own run must be known before the step is judged.
+    is_deferred: bool,
     error: Option<StepError>,
-    /// Whether more polynomials would have to be compared than were kept.
+    /// Whether more polynomials must be compared than were kept.
     beyond_limit: bool,
-    /// Whether it was judged to its end.
+    /// Whether the original's rules have judged the step completely.
     is_done: bool,
-    /// The work of judging it by the original's rules, in detection calls.
+    /// The work of judging the step by the original's rules, in detection calls.
     work: u64,
-    /// Whether the fair rules have judged it to its end, and their work.
+    /// Whether the fair rules have judged the step completely, and their work.
     is_done_fairly: bool,
     fair_work: u64,
-    /// The number of bytes that were read.
+    /// The number of bytes read for the step.
     bytes: usize,
 }
 
-/// Steps in a row; slots are reused from batch to batch.
+/// Consecutive steps; slots are reused from batch to batch.
 #[derive(Default)]
 struct Batch {
     slots: Vec<Mutex<StepSlot>>,
@@ -78,19 +78,18 @@ struct Batch {
     bytes: usize,
 }
 
-/// Judges a trace by both books, as the original does in lock step with the reference: each step starts from the
-/// trace's own state, takes over its mid record, and is compared with its end record (oracle-behavior.md 4 to 6).
-/// Memory does not depend on the trace's length. Bytes behind the last record are not read, except one that shows
-/// whether there are any.
+/// Judges a trace by both rule books, in lock step with the reference like the original. Each step starts from the
+/// trace's own state, uses its mid record, and is compared with its end record (oracle-behavior.md 4 to 6). Memory does
+/// not depend on the trace's length. After the last record, one byte is read to find out whether more follow.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
     judge_within(record_memory(scene), None, scene, &mut trace, options, progress)
 }
 
-/// Judges as [`judge`] does, with this much memory for the lists of a record, in bytes, and another floor of work, if
-/// one is given.
+/// Judges like [`judge`], with `memory` bytes for the lists of a record, and with another floor of work, if `floor` is
+/// given.
 ///
-/// It is compiled only here, for every source of traces: generic code is compiled where it is used, at that crate's
-/// level.
+/// This function is compiled only here, for every source of traces. Generic code would be compiled in the calling
+/// crate, at that crate's optimization level.
 pub(super) fn judge_within(
     memory: usize,
     floor: Option<u64>,
@@ -110,16 +109,16 @@ pub(super) fn judge_within(
     replay.judge(options, progress)
 }
 
-/// Which parts of a step are compared.
+/// The selection of the compared parts of a step.
 #[derive(Debug, Clone, Copy)]
 struct StepRules<'a> {
     layout: Layout,
     logs_impulses: bool,
-    /// The facts for the fair rules, as long as these judge.
+    /// The data for the fair rules, as long as they judge.
     fair: Option<Context<'a>>,
 }
 
-/// The sequential side: the reader, the state that the next step starts from, and the outcome so far.
+/// The sequential part: the reader, the start state of the next step, and the outcome so far.
 struct Replay<'a, R> {
     scene: &'a Scene,
     reader: Lenient<R>,
@@ -127,15 +126,15 @@ struct Replay<'a, R> {
     /// The end state of the last step that was read.
     state: State,
     steps_read: u32,
-    /// The states that lead nowhere by the fair rules, if these judge.
+    /// The check for states without continuation by the fair rules, if they judge.
     reach: Option<Reach<'a>>,
-    /// The work that is left to each book: the original's, which always judges, and the fair one's. The cost of one
-    /// does not count for the other.
+    /// The remaining work of each rule book. The original's always judges. The work of one does not count for the
+    /// other.
     budgets: [Budget<'a>; 2],
     order: ContestOrder,
-    /// Damage of the record that could not be read at last.
+    /// The damage of the last record, if it could not be read.
     damage: Option<Damage>,
-    /// Whether a record of the steps delivered so far, or the first one, is damaged.
+    /// Whether the first record, or a record of the delivered steps, is damaged.
     damaged: bool,
     /// The judgement of the fair rules so far, if they judge.
     judging: Option<Box<Judging>>,
@@ -197,7 +196,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.conclude()
     }
 
-    /// Tries a step whose records can't be read: the original computes it before it reads them, and may never end.
+    /// Tries a step with unreadable records. The original computes the step before it reads them, and may never finish.
     fn try_step(&mut self, step: u32) {
         let mut simulation = Simulation::new(self.scene, RootSearch::WhereNeeded);
         simulation.state_mut().clone_from(&self.state);
@@ -206,7 +205,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.outcome.parity.endless = self.outcome.parity.endless.or(error);
     }
 
-    /// Draws the verdicts.
+    /// Computes the verdicts.
     fn conclude(mut self) -> Outcome {
         self.outcome.fair = self.judging.take().map(|judging| Box::new(judging.conclude(&self.outcome)));
         self.outcome.conclude();
@@ -232,7 +231,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
     }
 
-    /// Returns the work that is left to each book.
+    /// Returns the remaining work of each rule book.
     fn rest(&self) -> [u64; 2] {
         [self.budgets[0].rest(), self.budgets[1].rest()]
     }
@@ -268,7 +267,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
     }
 
-    /// Fills a batch. A stop is that of the first step that could not be read; the batch holds the steps before it.
+    /// Fills a batch. A returned stop is that of the first unreadable step; the batch holds the steps before it.
     fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
         (batch.filled, batch.bytes) = (0, 0);
         while !self.complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
@@ -301,7 +300,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if self.shape.fair.is_some() {
                 read = self.read_frame(&mut slot.mid, &mut damage);
             } else {
-                // Parity never compares the mid record's lists; the end record's buffer serves for reading them.
+                // Parity never compares the mid record's lists, so they are read into the end record's buffer.
                 read = self.read_frame(&mut slot.end, &mut damage);
                 if read.is_ok() {
                     slot.mid.state.clone_from(&slot.end.state);
@@ -378,7 +377,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         false
     }
 
-    /// Adds the fair rules' findings about a step, until these rules are given up.
+    /// Adds the fair rules' findings about a step, until the fair rules stop.
     fn deliver_fair(&mut self, slot: &mut StepSlot) {
         let (Some(judging), Some(context), Some(reach)) = (&mut self.judging, &self.shape.fair, &mut self.reach) else {
             slot.fair = StepJudgement::default();
@@ -395,7 +394,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             has_judged &= reach.has_result(step);
             slot.fair = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
-            let known = (!slot.is_put_off).then(|| std::mem::take(&mut slot.fair));
+            let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair));
             let identical = slot.result.identical;
             let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.rest());
             if work > budget.rest() && budget.widen() {
@@ -407,7 +406,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         if has_judged {
             judging.add(&slot.fair);
         } else {
-            judging.give_up(step);
+            judging.stop_judging(step);
             self.shape.fair = None;
             slot.fair = StepJudgement::default();
         }
@@ -427,12 +426,12 @@ fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
 }
 
 impl Batch {
-    /// Returns whether a step of it is still to be judged.
+    /// Returns whether a step of the batch is still to be judged.
     fn is_waiting(&mut self) -> bool {
         self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_done || !slot.is_done_fairly)
     }
 
-    /// Returns the work of judging it so far, by each book.
+    /// Returns the work of judging the batch so far, by each rule book.
     fn work(&mut self) -> [u64; 2] {
         let slots = self.slots[..self.filled].iter_mut().map(lock);
         slots.fold([0, 0], |[parity, fair], slot| [parity + slot.work, fair + slot.fair_work])

@@ -13,7 +13,7 @@ pub(crate) const BOUNCE: &str = r#"<scene>
   <halfplane px="0" py="0" nx="0" ny="1"/>
 </scene>"#;
 
-/// A ball falls through an edge to a half-plane: `hybrid`, whose impulse rounds do not suffice in the first step.
+/// A ball that falls through an edge to a half-plane: `hybrid`, with too few impulse rounds for the first step.
 pub(crate) const ZONES: &str = r#"<scene>
   <duration time="0.3"/><integrator type="explicit-euler" dt="0.1"/>
   <collision type="hybrid" COR="0.5" maxiters="1" k="1" thickness="0.01"/>
@@ -23,7 +23,7 @@ pub(crate) const ZONES: &str = r#"<scene>
   <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.15" nx="0" ny="1"/>
 </scene>"#;
 
-/// Returns a scene that is written as the original reads it.
+/// Returns the scene written in `text`, read like the original.
 pub(crate) fn scene(text: &str) -> Scene {
     original::read(text.as_bytes()).expect("a scene").scene
 }
@@ -45,7 +45,7 @@ pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
     frames
 }
 
-/// Returns the bytes of these frames.
+/// Returns the bytes of `frames`.
 pub(crate) fn write_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
     let mut writer = Writer::new(Vec::new(), Layout::for_scene(scene));
     frames.iter().for_each(|frame| writer.write_frame(frame));
@@ -59,7 +59,7 @@ pub(crate) fn changed_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>))
     write_frames(scene, &frames)
 }
 
-/// Returns the outcome by both books.
+/// Returns the outcome by both rule books.
 pub(crate) fn judge_by_both(scene: &Scene, trace: &[u8]) -> Outcome {
     let options = Options { fair: true, threads: 1, ..Options::default() };
     replay::judge(scene, trace, &options, &mut ())

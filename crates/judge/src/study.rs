@@ -1,10 +1,9 @@
-//! One detection call in detail: its polynomials, their zeros, the times at which each is positive and all are, and the
-//! result.
+//! Studies one detection call: its polynomials, their zeros, the times at which each polynomial or all of them are
+//! positive, and the result.
 //!
-//! Judges nothing. The numbers are those of the reference, bit for bit: its formulas, its root finder, its sets of
-//! times (collisions.md 2, root-finder.md 15 and 16). Next to the course's approach polynomial of a particle and an
-//! edge is the mathematically right one (numerics.md 1), and next to the reference's decision whether round-off may
-//! flip it.
+//! Judges nothing. The numbers are identical to the reference's: its formulas, its root finder, its sets of times
+//! (collisions.md 2, root-finder.md 15 and 16). The study adds the mathematically right approach polynomial of a
+//! particle and an edge (numerics.md 1), and whether round-off may flip the reference's decision.
 use crate::{
     fair::{compare::compare, decides, formulas},
     finding::Role,
@@ -21,18 +20,18 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// One polynomial of a detection call, and where it is positive.
+/// One polynomial of a detection call, and its positive intervals.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// The polynomial's meaning when it is positive.
+    /// The meaning of a positive value of the polynomial.
     pub role: Role,
-    /// The polynomial's coefficients, highest power first, nothing dropped.
+    /// The polynomial's coefficients, highest power first, with nothing dropped.
     pub untrimmed: Polynomial,
-    /// As logged and searched: without small leading coefficients.
+    /// The polynomial as logged and searched, without small leading coefficients.
     pub logged: Polynomial,
-    /// The zeros as the reference's root finder gives them, in its order: real and imaginary part.
+    /// The zeros in the order of the reference's root finder, as real and imaginary part.
     pub zeros: Vec<(f64, f64)>,
-    /// Intervals in which it is positive, over all times; sorted and disjoint.
+    /// The intervals in which the polynomial is positive, over all times; sorted and disjoint.
     pub positive: Vec<Interval>,
 }
 
@@ -58,21 +57,22 @@ impl Curve {
     }
 }
 
-/// The zeros of a polynomial can't be found: the search would never end, because a coefficient is not finite or among
-/// the very smallest numbers. The original hangs here.
+/// The error if the zeros of a polynomial cannot be found. The search would never end, because a coefficient is not
+/// finite or extremely small. The original hangs.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("the root search of the {role} polynomial does not end")]
 pub struct NoAnswer {
-    /// Which polynomial.
+    /// The role of the polynomial.
     pub role: Role,
-    /// The polynomial's coefficients, nothing dropped.
+    /// The polynomial's coefficients, with nothing dropped.
     pub coefficients: Polynomial,
 }
 
-/// The decision of a list of polynomials.
+/// The decision that follows from a list of polynomials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// Intervals in which all are positive, over all times; sorted and disjoint. An interval may be a single time.
+    /// The intervals in which all polynomials are positive, over all times; sorted and disjoint. An interval may be a
+    /// single time.
     pub positive: Vec<Interval>,
     /// The decision.
     pub decision: Decision,
@@ -81,7 +81,7 @@ pub struct Answer {
 impl Answer {
     fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, NoAnswer> {
         let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
-        // Every search has ended before, on its own.
+        // Every search has ended before, separately.
         let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
         let normal = if time <= 1.0 { motion.normal(time) } else { None };
         let decision = match normal {
@@ -108,27 +108,28 @@ const SETS: usize = 32;
 pub struct RightApproach {
     /// The polynomial; it differs from the course's in t^3 only.
     pub curve: Curve,
-    /// The decision of it and the other three.
+    /// The decision that follows from this polynomial and the other three.
     pub answer: Answer,
 }
 
 /// A detection call in detail.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Study {
-    /// The pair and how it moves.
+    /// The pair and its motion.
     pub motion: PairMotion,
     /// The pair's polynomials in the order of the trace.
     pub curves: Vec<Curve>,
     /// The reference's decision.
     pub answer: Answer,
-    /// Whether the pair collides whatever rounding does to a correct program; `None` if round-off may flip it.
+    /// Whether the pair certainly collides, or certainly does not, in every correct program; `None` if round-off may
+    /// flip the decision.
     pub certain: Option<bool>,
-    /// The right approach polynomial, where it is another one than the course's.
+    /// The right approach polynomial, if it differs from the course's.
     pub right_approach: Option<RightApproach>,
 }
 
 impl Study {
-    /// Examines a pair with this motion.
+    /// Examines a pair with the given motion.
     ///
     /// # Errors
     /// [`NoAnswer`], if the original hangs.
@@ -156,8 +157,8 @@ impl Study {
         Ok(Self { motion: *motion, curves, answer, certain, right_approach })
     }
 
-    /// Returns whether a logged polynomial is right by the fair rules: except for a positive factor, round-off, and
-    /// small leading coefficients.
+    /// Returns whether a logged polynomial is right by the fair rules: equal except for a positive factor, round-off,
+    /// and small leading coefficients.
     #[must_use]
     pub fn is_right(&self, number: usize, logged: &[f64]) -> bool {
         let expected = formulas::BoundedPairMotion::from(&self.motion).polynomials();
@@ -180,8 +181,8 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::ExpectedPolyn
     Some(Polynomial::untrimmed(&coefficients))
 }
 
-/// The motion with bounds. The displacement's value is kept, its bound is that of a difference of positions, of which
-/// the one at the end may be off by a rounding.
+/// The motion with bounds. The displacement keeps its value, with the bound of a difference of positions whose end
+/// position may deviate by a rounding error.
 impl From<PointMotion> for formulas::BoundedPointMotion {
     fn from(point: PointMotion) -> Self {
         let start = BoundedVector::exact(point.start);
@@ -191,7 +192,7 @@ impl From<PointMotion> for formulas::BoundedPointMotion {
     }
 }
 
-/// The motion with bounds: end positions may be off by a rounding.
+/// The motion with bounds. End positions may deviate by a rounding error.
 impl From<&PairMotion> for formulas::BoundedPairMotion {
     fn from(motion: &PairMotion) -> Self {
         let way = formulas::BoundedPointMotion::from;
@@ -240,7 +241,7 @@ mod tests {
         assert_eq!((study.answer.decision.collides(), study.certain), (false, Some(false)));
     }
 
-    /// The sets on the way lead to the same time as the reference's own search.
+    /// The intermediate sets lead to the same time as the reference's own search.
     #[test]
     fn the_common_set_begins_at_the_time_of_impact() {
         let motion = PairMotion::Edge {

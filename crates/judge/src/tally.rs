@@ -1,8 +1,8 @@
 //! Compares one step of the trace with the reference while the reference computes it.
 //!
 //! [`Tally`] is the observer of that step: every polynomial is compared with the next one of the trace's list at the
-//! end of its pass, so nothing of the reference's log is stored but one pass. Only at the end of the step is it known
-//! whether the two lists have the same length; findings about polynomials count only then (oracle-behavior.md 6.2).
+//! end of its pass, so only one pass of the reference's log is stored. Findings about polynomials count only if the two
+//! lists have the same length, which is known at the end of the step (oracle-behavior.md 6.2).
 mod pending;
 
 use pending::Pending;
@@ -25,10 +25,9 @@ use fosssim_num::{
     vector::{at, length, same_bits},
 };
 
-/// Below this sum of moduli, coefficients that are equal bit for bit always pass the original's comparison: `(O*s)/s`
-/// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
-/// [`PARITY_COEFFICIENT`]. Above it the original may reject even its own output (oracle-behavior.md 8.10), so the
-/// comparison is made as it is written.
+/// Below this sum of moduli, identical coefficients always pass the original's comparison, because `(O*s)/s` differs
+/// from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of [`PARITY_COEFFICIENT`]. Above it
+/// the original may reject even its own output (oracle-behavior.md 8.10), so the comparison is made as it is written.
 const SAFE_SUM: f64 = 1e5;
 
 /// The result of judging one step; reused from step to step.
@@ -40,15 +39,15 @@ pub(super) struct StepResult {
     pub(super) counts: FindingCounts,
     /// The first finding of each kind, in the order in which they were found.
     pub(super) firsts: Vec<Finding>,
-    /// Residuals of each particle: position, velocity. Summed up in step order by the caller.
+    /// The residuals of each particle: position, velocity. The caller adds them up in the order of the steps.
     pub(super) residuals: Vec<(f64, f64)>,
-    /// Whether the step's states, impulses and polynomials are the reference's, bit for bit (small leading coefficients
-    /// dropped).
+    /// Whether the step's states, impulses and polynomials are identical to the reference's, after small leading
+    /// coefficients are dropped.
     pub(super) identical: bool,
 }
 
 impl StepResult {
-    /// Clears the result, as of a step without findings.
+    /// Resets the result to that of a step without findings.
     pub(super) fn clear(&mut self) {
         self.remarks.clear();
         self.firsts.clear();
@@ -99,21 +98,21 @@ pub(super) struct Tally<'a> {
     frame_number: u64,
     /// The end record of this step, small leading coefficients dropped.
     frame: &'a LenientFrame,
-    /// The mid record, when the layout has one.
+    /// The mid record, if the layout has one.
     mid: Option<&'a LenientFrame>,
     /// Whether the reference's impulses are logged; in `hybrid` they are not.
     logs_impulses: bool,
     buffers: &'a mut Buffers,
     result: &'a mut StepResult,
     passes: usize,
-    /// Polynomials of the reference so far.
+    /// The number of polynomials of the reference so far.
     polynomials: usize,
-    /// Whether all that was compared so far is equal bit for bit.
+    /// Whether everything compared so far is identical.
     identical: bool,
 }
 
 impl<'a> Tally<'a> {
-    /// Creates a tally of `step`, whose end record is `frame`. `result` is emptied first.
+    /// Creates a tally of `step`, whose end record is `frame`. Clears `result` first.
     pub(super) fn new(
         (step, frame_number): (u32, u64),
         frame: &'a LenientFrame,
@@ -140,7 +139,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Returns the comparison of the trace's next polynomial with the one of these bytes.
+    /// Compares the trace's next polynomial with the expected bytes `own`.
     #[inline]
     fn likeness(&self, own: &[u8]) -> Likeness {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
@@ -160,7 +159,7 @@ impl<'a> Tally<'a> {
         }
     }
 
-    /// Returns whether the lists have the same length, and the trace's was not kept to its end.
+    /// Returns whether the lists have the same length, and only a part of the trace's list was kept.
     pub(super) fn needs_more(&self) -> bool {
         self.frame.is_cut() && self.frame.logged == self.polynomials
     }
@@ -177,7 +176,8 @@ impl<'a> Tally<'a> {
         let is_same = same_state(reference, &self.frame.state);
         self.identical &= is_same;
         self.result.identical = self.identical;
-        // Residuals between the same numbers are zero and add nothing; between infinite ones they are none.
+        // Residuals between equal numbers are zero and add nothing; residuals between infinities are NaN and are
+        // skipped.
         if !is_same || !reference.is_finite() {
             self.compare_states(reference);
         }
@@ -238,7 +238,7 @@ impl<'a> Tally<'a> {
             let theirs = &self.frame.state;
             let (expected, actual) = (at(&reference.positions, particle), at(&theirs.positions, particle));
             let position = length(expected - actual);
-            // Written so that NaN is a finding: it fails the accumulated residual.
+            // The comparison is negated so that NaN is a finding: it fails the accumulated residual.
             if !(position < PARITY_MAXIMUM) {
                 let (expected, actual) = (expected.into(), actual.into());
                 let detail = FindingDetail::Position { particle, expected, actual, residual: position };
@@ -259,7 +259,7 @@ impl<'a> Tally<'a> {
         debug_assert_eq!(self.result.counts.get(FindingKind::Velocity), velocities);
     }
 
-    /// Compares the next polynomial of the reference, as oracle-behavior.md 6.2 does; `place` is its place, if that is
+    /// Compares the next polynomial of the reference like oracle-behavior.md 6.2. `place` is called for its place, if
     /// needed.
     pub(super) fn compare_polynomial(&mut self, expected: &[f64], place: impl Fn() -> PolynomialPlace) {
         let index = self.polynomials;
@@ -294,7 +294,7 @@ impl Observer for Tally<'_> {
         let mut own = std::mem::take(&mut self.buffers.own);
         let order = std::mem::take(&mut self.buffers.order);
         let mut coefficients = [0.0; MAX_COEFFICIENTS];
-        // Then the original rejects nothing that is the same. Where NaN is among it, it rejects nothing anyway.
+        // In this case the original rejects nothing that is identical. It never rejects NaN.
         let is_small = own.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
         for (number, bytes) in own.iter().enumerate() {
             let index = self.polynomials;
@@ -327,7 +327,7 @@ impl Observer for Tally<'_> {
         }
     }
 
-    /// Takes over the mid record's state without comparing it (oracle-behavior.md 4.2).
+    /// Uses the mid record's state without comparing it (oracle-behavior.md 4.2).
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
@@ -362,8 +362,8 @@ fn same_state(own: &State, other: &State) -> bool {
     same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
 }
 
-/// Returns whether the original accepts a polynomial (oracle-behavior.md 6.2): it is right up to a factor, or zero, or
-/// holds NaN.
+/// Returns whether the original accepts a polynomial (oracle-behavior.md 6.2): right up to a factor, zero, or with a
+/// NaN.
 fn passes(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
@@ -376,18 +376,18 @@ fn passes(own: &[f64], actual: &[f64]) -> bool {
     own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
 }
 
-/// The facts about a polynomial of the trace that are known immediately.
+/// The likeness of a polynomial of the trace, as far as a quick comparison shows it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Likeness {
-    /// The polynomial is the reference's bit for bit.
+    /// The polynomial is identical to the reference's.
     Same,
-    /// The polynomial differs, and [`passes`] accepts it.
+    /// The polynomial differs by a factor, and [`passes`] accepts it.
     Factor,
-    /// Nothing.
+    /// The quick comparison does not decide.
     Open,
 }
 
-/// Returns the comparison of both by one division for all coefficients: it rounds differently from the original by less
+/// Compares both polynomials with one division for all coefficients. Its rounding differs from the original's by less
 /// than a hundredth of the bound.
 #[inline]
 fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
@@ -419,8 +419,7 @@ fn sum_of_moduli(coefficients: &[f64]) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum + c.abs())
 }
 
-/// Returns whether two lists are equal bit for bit and small enough that the original's comparison accepts them for
-/// certain.
+/// Returns whether two lists are identical, and small enough that the original's comparison certainly accepts them.
 #[inline]
 fn equal_and_safe(own: &[f64], actual: &[f64]) -> bool {
     if own.len() != actual.len() {
@@ -449,7 +448,7 @@ mod tests {
         assert!(!equal_and_safe(&[1.0], &[1.0, 2.0]));
     }
 
-    /// A polynomial that clearly has a factor passes, too, and nearly every polynomial that passes with a factor has it
+    /// A polynomial that clearly has a factor passes, and nearly every polynomial that passes with a factor has it
     /// clearly.
     #[test]
     fn what_clearly_has_a_factor_passes() {

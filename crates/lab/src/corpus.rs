@@ -1,4 +1,4 @@
-//! A corpus of submissions that the original has judged: `verdicts.jsonl`, `scenes/` and `submissions/`.
+//! A corpus of submissions judged by the original: `verdicts.jsonl`, `scenes/` and `submissions/`.
 use anyhow::Context;
 use fosssim_oracle::scene::{Scene, original};
 use serde::Deserialize;
@@ -9,31 +9,31 @@ use std::path::Path;
 pub struct CorpusRow {
     /// The submission's name.
     pub submission: String,
-    /// The trace's kind; `a` is a correct trace.
+    /// The kind of the trace; `a` is a correct trace.
     pub kind: String,
     /// The scene's name.
     pub scene: String,
     /// The original's verdict.
     pub overall: String,
     trace_file: Option<String>,
-    /// Whether the trace is the reference's own.
+    /// Whether the trace is identical to the reference's.
     pub trace_equals_reference: Option<bool>,
 }
 
 /// Returns all rows of a corpus.
 ///
 /// # Errors
-/// When the folder is no corpus.
+/// If the folder is not a corpus.
 pub fn rows(corpus: &Path) -> anyhow::Result<Vec<CorpusRow>> {
-    let text = std::fs::read_to_string(corpus.join("verdicts.jsonl")).context("no verdicts.jsonl there")?;
+    let text = std::fs::read_to_string(corpus.join("verdicts.jsonl")).context("the folder has no verdicts.jsonl")?;
     Ok(text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
 }
 
 impl CorpusRow {
-    /// Reads the scene and the trace, where there is one.
+    /// Reads the scene and the trace, if the trace exists.
     ///
     /// # Errors
-    /// When one can't be read.
+    /// If one of them cannot be read.
     pub fn read(&self, corpus: &Path) -> anyhow::Result<Option<(Scene, Vec<u8>)>> {
         let Some(file) = &self.trace_file else { return Ok(None) };
         let scene = std::fs::read(corpus.join("scenes").join(format!("{}.xml", self.scene)))?;

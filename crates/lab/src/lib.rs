@@ -1,4 +1,4 @@
-//! Tools of measurement: what docs' tables are made with, and right programs in other arithmetic.
+//! Measurement tools: the sources of tables in the docs, and right programs in other arithmetic.
 #![forbid(unsafe_code)]
 
 pub mod corpus;

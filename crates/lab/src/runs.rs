@@ -1,4 +1,4 @@
-//! Programs and scenes as the tools try them: the traces that programs write, and the judge's results for these.
+//! Programs and scenes for the tools: the traces that programs write, and the judge's results for them.
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
     judge::{
@@ -13,19 +13,19 @@ use fosssim_oracle::{
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Returns the trace that a program writes; if it does not end, the part written by then.
+/// Returns the trace that a program writes; if the program does not end, the part written until then.
 #[must_use]
 pub fn trace(scene: &Scene, student: Student) -> Vec<u8> {
     student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-/// Returns the outcome by both rule books, on one thread, since the tools try many things at one time.
+/// Returns the outcome by both rule books, on one thread, because the tools try many programs at one time.
 #[must_use]
 pub fn judge(scene: &Scene, trace: &[u8]) -> Outcome {
     replay::judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
 }
 
-/// Returns whether the fair rules accept.
+/// Returns whether the fair rules accept the trace.
 #[must_use]
 pub fn is_accepted(outcome: &Outcome) -> bool {
     outcome.fair.as_ref().is_some_and(|fair| fair.verdict == FairVerdict::Accepted)
@@ -46,7 +46,7 @@ impl WatchedScene {
     /// Returns the scenes in the groups of a folder.
     ///
     /// # Errors
-    /// When one can't be read, or there is none.
+    /// If one cannot be read, or there are none.
     pub fn from_folder(folder: &Path) -> anyhow::Result<Vec<Self>> {
         let files =
             scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;

@@ -1,5 +1,5 @@
-//! The likely mistake behind a wrong trace: [`diagnose`] names a mistake that a program of [`fosssim_student`] makes,
-//! and [`together`] combines the scenes of one submission.
+//! Finds the likely mistake behind a wrong trace. [`diagnose`] names a mistake that a program of [`fosssim_student`]
+//! makes, and [`together`] combines the scenes of one submission.
 //!
 //! ```
 //! use fosssim_mistakes::diagnose;

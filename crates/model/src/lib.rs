@@ -1,7 +1,7 @@
-//! Assignments, scenes, their simulation and its traces: [`assignments`], [`scene`], [`sim`] and [`trace`],
-//! from the lowest room to the highest.
+//! Assignments, scenes, their simulation and its traces: [`assignments`], [`scene`], [`sim`] and [`trace`], from the
+//! lowest module to the highest.
 //!
-//! A room imports only from those listed above it. The arithmetic whose bits matter is below, in `fosssim-num`.
+//! A module imports only from modules listed before it. The arithmetic whose bits matter is below, in `fosssim-num`.
 //!
 //! ```
 //! use fosssim_model::{

@@ -1,10 +1,10 @@
-//! Numbers that carry a bound on their rounding error: running error analysis.
+//! Numbers with a bound on their rounding error, by running error analysis.
 //!
-//! A [`BoundedValue`] is a computed value with a count `units`: whatever order a correct program evaluates the same
-//! formula in, its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those
-//! of Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section
-//! 3.3), with the modulus of the operands instead of the result's for sums: terms that cancel therefore keep their
-//! weight, and the bound also covers other orders of summation. No bound reaches a trace.
+//! A [`BoundedValue`] is a computed value with a bound: in whatever order a correct program evaluates the same formula,
+//! its result lies within about `units * u` of the value, `u = 2^-53`, to first order. The rules are those of
+//! Wilkinson's running error analysis (Higham, *Accuracy and Stability of Numerical Algorithms*, 2nd ed., section 3.3),
+//! with the modulus of the operands instead of the result's for sums. Canceling terms therefore keep their weight, and
+//! the bound also covers other orders of summation. Bounds are never written to a trace.
 use super::{
     lanes::{Modulus, Number, Plane},
     vector::Vec2,
@@ -14,13 +14,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// The unit roundoff of doubles, `2^-53`.
 pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
 
-/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value); of one number, or of one
+/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value), for one number or for one
 /// in each [lane](super::lanes).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BoundedValue<N = f64> {
     /// The computed value.
     pub value: N,
-    /// Sum of the moduli of everything that was rounded on the way, weighted by its effect; at least 0, or NaN.
+    /// The sum of the moduli of all rounded intermediate results, weighted by their effect; at least 0, or NaN.
     pub bound: N,
 }
 
@@ -35,7 +35,7 @@ impl BoundedValue {
         Self { value, bound: 0.0 }
     }
 
-    /// Returns an input that may be off by one rounding.
+    /// Returns an input with an error of at most one rounding.
     #[inline]
     #[must_use]
     pub const fn rounded(value: f64) -> Self {
@@ -51,7 +51,7 @@ impl BoundedVector {
         Self { x: BoundedValue::exact(v.x), y: BoundedValue::exact(v.y) }
     }
 
-    /// Returns a vector whose components may each be off by one rounding.
+    /// Returns a vector whose components each have an error of at most one rounding.
     #[inline]
     #[must_use]
     pub fn rounded(v: Vec2) -> Self {
@@ -87,7 +87,7 @@ impl<N: Number + Modulus> Mul for BoundedValue<N> {
     }
 }
 
-/// A divisor of 0 gives the quotient of the division, and a bound that is infinite or NaN.
+/// A divisor of 0 gives the quotient of the division, and an infinite or NaN bound.
 impl Div for BoundedValue {
     type Output = Self;
     #[inline]
@@ -106,7 +106,7 @@ impl<N: Number> Neg for BoundedValue<N> {
     }
 }
 
-/// A factor without error.
+/// The factor has no error.
 impl Mul<BoundedValue> for f64 {
     type Output = BoundedValue;
     #[inline(always)]
@@ -116,8 +116,8 @@ impl Mul<BoundedValue> for f64 {
     }
 }
 
-/// The most that a number's modulus can be: differences count as sums. With it a formula yields how large its results
-/// and their bounds are at most, whatever the signs.
+/// The maximum modulus of a number; differences count as sums. With it, a formula gives upper bounds of its results and
+/// their error bounds, whatever the signs.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Magnitude(pub f64);
 
@@ -156,7 +156,7 @@ impl Neg for Magnitude {
     }
 }
 
-/// A factor without error.
+/// The factor has no error.
 impl Mul<BoundedValue<Magnitude>> for f64 {
     type Output = BoundedValue<Magnitude>;
     fn mul(self, other: BoundedValue<Magnitude>) -> BoundedValue<Magnitude> {
@@ -177,7 +177,7 @@ impl<N: Number + Modulus> Mul<BoundedVector<N>> for BoundedValue<N> {
 mod tests {
     use super::*;
 
-    /// The rules of running error analysis on numbers that can be reckoned by hand.
+    /// The rules of running error analysis on numbers that can be computed by hand.
     #[test]
     fn each_operation_has_the_bound_of_its_rule() {
         let number = |value: f64, bound: f64| BoundedValue { value, bound };
@@ -200,7 +200,8 @@ mod tests {
         assert_eq!((twice.x, twice.y), (b * vector.x, b * vector.y));
     }
 
-    /// `(a + b) - a` with a large `a`: the rest of `b` may be off by a rounding of `a`, and the bound must cover it.
+    /// `(a + b) - a` with a large `a`: the remaining part of `b` may deviate by a rounding of `a`, and the bound must
+    /// cover it.
     #[test]
     fn cancelled_terms_keep_their_weight() {
         let (a, b) = (BoundedValue::exact(1e10), BoundedValue::exact(0.1));

@@ -1,7 +1,7 @@
-//! Enums that are closed sets: one row for each variant, from which the list of all and their names follow.
+//! Enums that are closed sets, declared with one row per variant, with a list of all variants and their names.
 
-/// Declares an enum with `ALL`, its variants in their order, and, where each row has a name, the function `name`. Rows
-/// may have one more text, whose function is named below them.
+/// Declares an enum with `ALL`, its variants in order, and, if each row has a name, the function `name`. Rows may have
+/// one more text, whose function is named below them.
 ///
 /// ```
 /// fosssim_num::closed_set! {
@@ -23,7 +23,7 @@ macro_rules! closed_set {
         $vis enum $set { $($(#[$about])* $variant,)+ }
 
         impl $set {
-            /// All variants, in their order.
+            /// All variants, in order.
             $vis const ALL: [Self; [$(Self::$variant),+].len()] = [$(Self::$variant),+];
         }
     };

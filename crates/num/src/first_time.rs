@@ -1,8 +1,8 @@
 //! The first time from which a list of polynomials is positive.
 //!
 //! Part II of root-finder.md: the zeros cut the line into gaps, one sample per gap shows whether the polynomial is
-//! positive there, and the sets of all polynomials are intersected. The samples are taken at face value, as the
-//! original does: rounding may decide one, and zeros that the root finder did not find are simply missing.
+//! positive there, and the sets of all polynomials are intersected. Like in the original, the samples are trusted:
+//! rounding may decide a sample, and zeros that the root finder did not find are simply missing.
 use super::{
     interval::{Interval, Intervals},
     polynomial::{Polynomial, evaluate},
@@ -11,17 +11,17 @@ use super::{
 };
 
 /// Returns the earliest `t >= 0` from which all polynomials are positive, `+inf` if none (root-finder.md 16.3).
-/// Polynomials must have been made by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
+/// Polynomials must have been created by [`Polynomial::trimmed`] (or `untrimmed`, for the non-dropping build).
 ///
-/// All polynomials are solved, even when an earlier one is nowhere positive: this decides whether the search ends.
-/// The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. An empty list gives
+/// All polynomials are solved, even if an earlier one is nowhere positive, because this decides whether the search
+/// ends. The result is `+0`, positive or `+inf`, never `-0` and never NaN for finite coefficients. An empty list gives
 /// `+inf`, and so does a list with an empty polynomial or one of the form `c z^m`, whatever the others are.
 ///
 /// # Errors
-/// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
+/// [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
 ///
 /// # Panics
-/// With more than ten polynomials whose sets are as ragged as can be; a detection has at most four.
+/// With more than ten polynomials whose sets have the maximum number of intervals; a detection has at most four.
 #[inline]
 pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
     first_time_counted(polynomials, &mut 0)
@@ -30,14 +30,14 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 /// Returns the time of [`first_time`], and adds the steps of the root searches to `steps` ([`Zeros::steps`]).
 ///
 /// # Errors
-/// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
+/// [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
 ///
 /// # Panics
-/// As [`first_time`].
+/// The panics of [`first_time`].
 #[inline]
 pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result<f64, DoesNotTerminate> {
     let lists = polynomials.iter().map(Polynomial::coefficients);
-    // Two polynomials, of degree five at most, meet in five intervals at most; four of them in nine.
+    // Two polynomials, of degree five at most, have at most five common intervals; four of them nine.
     match polynomials.len() {
         0..=2 => intersected::<5>(lists, steps),
         3..=4 => intersected::<9>(lists, steps),
@@ -45,14 +45,14 @@ pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result
     }
 }
 
-/// Returns the time of [`first_time`] by coefficient lists, highest power first, taken as they are; degrees up to
+/// Returns the time of [`first_time`] for coefficient lists, highest power first, used unchanged; degrees up to
 /// [`MAX_DEGREE`].
 ///
 /// # Errors
-/// [`DoesNotTerminate`] when the search for one polynomial's zeros would never end.
+/// [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
 ///
 /// # Panics
-/// With more than ten lists whose sets are as ragged as can be.
+/// With more than ten lists whose sets have the maximum number of intervals.
 pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
     intersected::<32>(lists.into_iter(), &mut 0)
 }
@@ -81,7 +81,7 @@ pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 /// (root-finder.md 15.3).
 ///
 /// # Errors
-/// [`DoesNotTerminate`] when the search for its zeros would never end.
+/// [`DoesNotTerminate`] if the search for its zeros would never end.
 ///
 /// # Panics
 /// With more than [`MAX_DEGREE`]` + 1` coefficients.
@@ -100,7 +100,7 @@ fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNot
     let mut storage = [0.0; MAX_DEGREE];
     let breaks = sorted_real_parts(&zeros, &mut storage);
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
-        // No real zero is known: t = 0 represents the whole line.
+        // No real zero is known, so t = 0 represents the whole line.
         if evaluate(coefficients, 0.0) > 0.0 {
             set.push(Interval::EVERYTHING);
         }
@@ -123,7 +123,7 @@ fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNot
 
 /// Returns the real parts of the zeros that count as real, ascending.
 ///
-/// It is the original's insertion sort, step by step: with a NaN among the values the result depends on the method.
+/// This is the original's insertion sort, step by step; with a NaN among the values the result depends on the method.
 fn sorted_real_parts<'a>(zeros: &Zeros, storage: &'a mut [f64; MAX_DEGREE]) -> &'a [f64] {
     let mut length = 0;
     for &(re, im) in zeros.as_slice() {

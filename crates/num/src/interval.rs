@@ -1,22 +1,22 @@
 //! Sorted lists of disjoint intervals of time, in fixed storage.
 //!
-//! Intervals are closed where they meet others: touching ones merge, and an intersection may be a single point
+//! Intervals are closed where they meet: touching intervals merge, and an intersection may be a single point
 //! (root-finder.md 15.4 and 16). The lists never allocate.
 
 /// The times from `lo` to `hi`, either of which may be infinite. `lo <= hi` unless a bound is NaN.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Interval {
-    /// The begin of the interval, as a fraction of the step.
+    /// The lower end of the interval, as a fraction of the step.
     pub lo: f64,
-    /// The place where it ends.
+    /// The upper end of the interval.
     pub hi: f64,
 }
 
 impl Interval {
-    /// All times.
+    /// The interval of all times.
     pub const EVERYTHING: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
-    /// Returns whether the two share at least a point (closed comparison; false with a NaN bound).
+    /// Returns whether the two intervals share a point (closed comparison; false with a NaN bound).
     #[inline]
     #[must_use]
     pub fn touches(self, other: Self) -> bool {
@@ -24,10 +24,10 @@ impl Interval {
     }
 }
 
-/// A list of at most `CAPACITY` intervals, normalized unless it is just being filled.
+/// A list of at most `CAPACITY` intervals, normalized unless it is being filled.
 ///
-/// The positive set of a polynomial of degree six has at most four intervals, that of a parabola two; each further
-/// polynomial of an intersection adds at most one less than it has itself.
+/// The positive set of a polynomial of degree six has at most four intervals, and that of a parabola two. Each further
+/// polynomial of an intersection adds at most one less than its own number.
 #[derive(Debug, Clone, Copy)]
 pub struct Intervals<const CAPACITY: usize> {
     length: usize,
@@ -48,7 +48,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// Appends an interval without merging it.
     ///
     /// # Panics
-    /// When the list already holds `CAPACITY`.
+    /// If the list already holds `CAPACITY` intervals.
     #[inline]
     pub fn push(&mut self, interval: Interval) {
         self.list[self.length] = interval;
@@ -86,7 +86,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// Returns the times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
     ///
     /// # Panics
-    /// When the result would hold more than `CAPACITY`.
+    /// If the result would hold more than `CAPACITY` intervals.
     #[inline]
     #[must_use]
     pub fn intersection<const OTHER: usize>(&self, other: &Intervals<OTHER>) -> Self {

@@ -1,16 +1,16 @@
-//! Several numbers that undergo the same operations together, as vector instructions do: the formulas of several pairs
-//! in the time of one.
+//! Several numbers that undergo the same operations together, as in vector instructions: the formulas of several pairs
+//! take the time of one.
 //!
-//! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on how numbers are put
-//! together. Only the sign of a NaN may differ, which is the compiler's choice: code that needs its bits keeps NaN out.
-//! The number of lanes depends on the machine ([`Instructions`]); on one without wide instructions it is one.
+//! Each lane rounds like a single number (IEEE 754, no fused operations), so no bit depends on the grouping of numbers.
+//! Only the sign of a NaN may differ, which the compiler chooses, so code that needs its bits must exclude NaN. The
+//! number of lanes depends on the machine ([`Instructions`]); it is one without wide instructions.
 use super::vector::Vec2;
 use pulp::Arch;
 pub use pulp::Simd;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// The number type of the detection formulas: one number, or a lane of each of several pairs. Besides, a `f64` in front
-/// multiplies it.
+/// The number type of the detection formulas: one number, or a lane for each of several pairs. It can be multiplied by
+/// an `f64` on its left.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {}
 
 impl<N> Number for N where N: Copy + Add<Output = N> + Sub<Output = N> + Mul<Output = N> + Neg<Output = N> {}
@@ -32,9 +32,9 @@ impl Modulus for f64 {
 /// A vector in the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Plane<N> {
-    /// To the right.
+    /// The component to the right.
     pub x: N,
-    /// Up.
+    /// The component upward.
     pub y: N,
 }
 
@@ -69,8 +69,8 @@ impl<N: Number> Sub for Plane<N> {
     }
 }
 
-/// Most lanes that any machine has.
-pub const MOST_LANES: usize = 8;
+/// The maximum number of lanes of any machine.
+pub const MAX_LANES: usize = 8;
 
 /// The widest instructions of this machine.
 #[derive(Debug, Clone, Copy)]
@@ -82,33 +82,33 @@ impl Default for Instructions {
     }
 }
 
-/// The number of pairs, in all steps of a scene, below which wide instructions are not worth a check: a virtual machine
-/// may take 0.1 ms to list its processor's instructions.
-const FEW_PAIRS: u64 = 1000;
+/// The minimum number of pairs, in all steps of a scene, for which wide instructions are worth a check; a virtual
+/// machine may take 0.1 ms to list its processor's instructions.
+const MIN_PAIRS: u64 = 1000;
 
-/// The number of unknowns of a system of linear equations.
-const FEW_UNKNOWNS: usize = 8;
+/// The minimum number of unknowns of a system of linear equations for which wide instructions are worth a check.
+const MIN_UNKNOWNS: usize = 8;
 
 impl Instructions {
-    /// Returns the widest instructions for this many pairs in all steps of a scene, if the check is worth the time.
+    /// Returns the widest instructions for `pairs` pairs in all steps of a scene, if the check is worth the time.
     #[must_use]
     pub fn for_pairs(pairs: u64) -> Self {
-        if pairs < FEW_PAIRS { Self::plain() } else { Self::default() }
+        if pairs < MIN_PAIRS { Self::plain() } else { Self::default() }
     }
 
-    /// Chooses the width for systems of linear equations with this many unknowns.
+    /// Chooses the width for systems of linear equations with `unknowns` unknowns.
     #[must_use]
     pub fn for_unknowns(unknowns: usize) -> Self {
-        if unknowns < FEW_UNKNOWNS { Self::plain() } else { Self::default() }
+        if unknowns < MIN_UNKNOWNS { Self::plain() } else { Self::default() }
     }
 
-    /// Returns one lane, on every machine.
+    /// Returns instructions with one lane, on every machine.
     #[must_use]
     pub const fn plain() -> Self {
         Self(Arch::Scalar)
     }
 
-    /// Does a piece of work with these instructions.
+    /// Does work with the instructions.
     #[inline]
     pub fn run<W: Work>(self, work: W) -> W::Output {
         self.0.dispatch(DispatchedWork(work))
@@ -119,8 +119,8 @@ impl Instructions {
 pub trait Work {
     /// The type of the result.
     type Output;
-    /// Does it. To be inlined always, with all that it calls and without closures, which would be compiled for other
-    /// instructions: the callers are compiled once for each set.
+    /// Does the work. It must always be inlined, with everything that it calls and without closures, which would be
+    /// compiled for other instructions, because the callers are compiled once for each set of instructions.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
 
@@ -142,7 +142,7 @@ pub struct Lanes<S: Simd> {
 }
 
 impl<S: Simd> Lanes<S> {
-    /// The number of them.
+    /// The number of lanes.
     pub const COUNT: usize = S::F64_LANES;
 
     /// Returns one number in all lanes.
@@ -151,7 +151,7 @@ impl<S: Simd> Lanes<S> {
         Self { simd, values: simd.splat_f64s(value) }
     }
 
-    /// Returns one number in as many lanes as these.
+    /// Returns one number in as many lanes as `self` has.
     #[inline(always)]
     pub fn like(self, value: f64) -> Self {
         Self::all(self.simd, value)
@@ -160,7 +160,7 @@ impl<S: Simd> Lanes<S> {
     /// Reads the first numbers of a slice.
     ///
     /// # Panics
-    /// When it has too few.
+    /// If the slice has too few numbers.
     #[inline(always)]
     pub fn load(simd: S, numbers: &[f64]) -> Self {
         Self { simd, values: S::as_simd_f64s(&numbers[..Self::COUNT]).0[0] }
@@ -169,22 +169,22 @@ impl<S: Simd> Lanes<S> {
     /// Writes the lanes to the front of a slice.
     ///
     /// # Panics
-    /// When it is too short.
+    /// If the slice is too short.
     #[inline(always)]
     pub fn store(self, numbers: &mut [f64]) {
         S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.values;
     }
 
-    /// Writes the numbers of each lane one behind the other, four at a time; the numbers of the next lane begin
-    /// `stride` later.
+    /// Writes the numbers of each lane one after the other, four at a time; the numbers of the next lane begin `stride`
+    /// later.
     ///
     /// # Panics
-    /// When the slice is too short.
+    /// If the slice is too short.
     #[inline(always)]
     pub fn store_by_lane<const FOURS: usize>(numbers: &[[Self; 4]; FOURS], stride: usize, rows: &mut [f64]) {
         for (four, [a, b, c, d]) in numbers.iter().enumerate() {
             if Self::COUNT == 4 {
-                // Of as many vectors as there are lanes this is a transposition: four instructions of eight.
+                // For as many vectors as lanes this is a transposition, with four instructions for eight.
                 let turned = a.simd.interleave_shfl_f64s([a.values, b.values, c.values, d.values]);
                 for (lane, values) in turned.into_iter().enumerate() {
                     let begin = lane * stride + 4 * four;
@@ -192,7 +192,7 @@ impl<S: Simd> Lanes<S> {
                 }
             } else {
                 for (number, lanes) in [a, b, c, d].into_iter().enumerate() {
-                    let mut single = [0.0; MOST_LANES];
+                    let mut single = [0.0; MAX_LANES];
                     lanes.store(&mut single);
                     for (lane, value) in single[..Self::COUNT].iter().enumerate() {
                         rows[lane * stride + 4 * four + number] = *value;
@@ -208,13 +208,13 @@ impl<S: Simd> Lanes<S> {
         Self { values: self.simd.abs_f64s(self.values), ..self }
     }
 
-    /// Returns the larger number of each lane, of numbers.
+    /// Returns the larger number of each lane; no number may be NaN.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self { values: self.simd.max_f64s(self.values, other.values), ..self }
     }
 
-    /// Returns the largest of all lanes, of numbers.
+    /// Returns the largest number of all lanes; no number may be NaN.
     #[inline(always)]
     pub fn largest(self) -> f64 {
         self.simd.reduce_max_f64s(self.values)
@@ -226,25 +226,25 @@ impl<S: Simd> Lanes<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_f64s(self.values, other.values) }
     }
 
-    /// Returns the lanes in which a number is less than the other or equal.
+    /// Returns the lanes in which a number is at most the other.
     #[inline(always)]
     pub fn le(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.less_than_or_equal_f64s(self.values, other.values) }
     }
 
-    /// Returns the lanes with less than a number.
+    /// Returns the lanes whose number is less than `bound`.
     #[inline(always)]
     pub fn below(self, bound: f64) -> Mask<S> {
         self.lt(self.like(bound))
     }
 
-    /// Returns the lanes with at least a number.
+    /// Returns the lanes whose number is at least `bound`.
     #[inline(always)]
     pub fn at_least(self, bound: f64) -> Mask<S> {
         self.like(bound).le(self)
     }
 
-    /// Returns the lanes with zero.
+    /// Returns the lanes whose number is zero.
     #[inline(always)]
     pub fn is_zero(self) -> Mask<S> {
         Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, self.like(0.0).values) }
@@ -299,7 +299,7 @@ impl<S: Simd> Neg for Lanes<S> {
     }
 }
 
-/// Yes or no per lane.
+/// A truth value per lane.
 #[derive(Debug, Clone, Copy)]
 pub struct Mask<S: Simd> {
     simd: S,
@@ -312,7 +312,7 @@ impl<S: Simd> Mask<S> {
     pub fn or_zero(self, number: f64) -> Lanes<S> {
         let simd = self.simd;
         let mask = if Lanes::<S>::COUNT > 1 {
-            // All bits of a lane or none, as in a mask of several lanes. The choice below would test it once more.
+            // All bits of a lane or none, as in a mask of several lanes. A selection would test it again.
             pulp::bytemuck::pod_read_unaligned(pulp::bytemuck::bytes_of(&self.lanes))
         } else {
             simd.select_u64s(self.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0))
@@ -334,7 +334,7 @@ impl<S: Simd> Mask<S> {
     }
 }
 
-/// Sets lanes that both have set.
+/// Sets lanes that are set in both masks.
 impl<S: Simd> BitAnd for Mask<S> {
     type Output = Self;
     #[inline(always)]
@@ -343,7 +343,7 @@ impl<S: Simd> BitAnd for Mask<S> {
     }
 }
 
-/// Sets lanes that at least one has set.
+/// Sets lanes that are set in at least one mask.
 impl<S: Simd> BitOr for Mask<S> {
     type Output = Self;
     #[inline(always)]
@@ -352,7 +352,7 @@ impl<S: Simd> BitOr for Mask<S> {
     }
 }
 
-/// Sets lanes that are not set.
+/// Sets lanes that are not set in the mask.
 impl<S: Simd> Not for Mask<S> {
     type Output = Self;
     #[inline(always)]
@@ -361,10 +361,10 @@ impl<S: Simd> Not for Mask<S> {
     }
 }
 
-/// Writes numbers as little-endian bytes, in one copy if the machine stores them so.
+/// Writes numbers as little-endian bytes, in one copy if the machine stores them in that form.
 ///
 /// # Panics
-/// When there is no room for all of them.
+/// If there is too little room for all numbers.
 #[inline(always)]
 pub fn copy_little_endian(numbers: &[f64], room: &mut [u8]) {
     let room = &mut room[..8 * numbers.len()];
@@ -388,7 +388,7 @@ mod tests {
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let from = |first: u32| {
-                let values: [f64; MOST_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
+                let values: [f64; MAX_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
                 Lanes::load(simd, &values)
             };
             let sum = from(4).at_least(4.125).or_zero(-2.5) + from(0).below(0.25).or_zero(1.0);

@@ -1,11 +1,11 @@
 //! Arithmetic whose bits matter: polynomials, the Jenkins-Traub root finder, first satisfaction times, certificates
-//! that make a root search unnecessary, decisions that hold whatever rounding did, the linear solver of the implicit
+//! that make a root search unnecessary, decisions that hold for any rounding, the linear solver of the implicit
 //! integrators, elementary functions, and numbers as C++ prints them.
 //!
-//! Knows nothing of the rest of the crate, never prints, never touches files or processes, and never allocates in the
-//! functions that run per pair (except the integers of [`decision::exact`], the last resort). The mathematics is that
-//! of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493, ACM TOMS 1, 1975),
-//! evaluated in the order in which the original does.
+//! This crate uses no other crate of the project, does not print, does not use files or processes, and does not
+//! allocate in the functions that run per pair (except the integers of [`decision::exact`], the last resort). The
+//! mathematics is that of `root-finder.md` (Jenkins and Traub, SIAM J. Numer. Anal. 7, 1970; Jenkins, Algorithm 493,
+//! ACM TOMS 1, 1975), evaluated in the original's order.
 //!
 //! ```
 //! use fosssim_num::{first_time::first_time, polynomial::Polynomial};

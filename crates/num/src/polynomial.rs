@@ -1,8 +1,8 @@
-//! Polynomials of degree at most five (six while searching zeros), in fixed storage, highest power first.
+//! Polynomials of degree at most five (six while zeros are searched), in fixed storage, highest power first.
 use super::written::Number;
 use serde::{Deserialize, Serialize};
 
-/// The largest number of coefficients of a detection polynomial (degree 5).
+/// The maximum number of coefficients of a detection polynomial (degree 5).
 pub const MAX_COEFFICIENTS: usize = 6;
 
 /// A real polynomial, **highest power first**, after removal of the small leading coefficients.
@@ -10,7 +10,7 @@ pub const MAX_COEFFICIENTS: usize = 6;
 #[serde(into = "Vec<Number>", try_from = "Vec<Number>")]
 pub struct Polynomial {
     length: u8,
-    /// The coefficients are at the end, behind zeros.
+    /// The coefficients, at the end of the array, after zeros.
     storage: [f64; MAX_COEFFICIENTS],
 }
 
@@ -44,8 +44,8 @@ impl Polynomial {
         polynomial
     }
 
-    /// Drops leading coefficients in place as [`Polynomial::trimmed`] does. Where polynomials are made for many pairs,
-    /// this is faster, since none is copied.
+    /// Drops leading coefficients in place, like [`Polynomial::trimmed`]. If polynomials are created for many pairs,
+    /// this is faster, because none is copied.
     #[inline]
     pub fn trim(&mut self) {
         while let Some(leading) = self.storage[MAX_COEFFICIENTS - usize::from(self.length)..].first_mut() {
@@ -57,7 +57,7 @@ impl Polynomial {
         }
     }
 
-    /// Takes the list as it is (the non-dropping build of later milestones).
+    /// Creates a polynomial from an unchanged list (the non-dropping build of later milestones).
     ///
     /// # Panics
     /// With more than [`MAX_COEFFICIENTS`] coefficients.
@@ -70,7 +70,7 @@ impl Polynomial {
         Self { length: coefficients.len() as u8, storage }
     }
 
-    /// Returns the coefficients, highest power first; empty when all were too small.
+    /// Returns the coefficients, highest power first; empty if all were too small.
     #[inline]
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
@@ -104,7 +104,7 @@ fn is_small(leading: f64) -> bool {
     leading.abs() < super::tolerances::LEADING_COEFFICIENT
 }
 
-/// Returns the value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, hence not
+/// Returns the value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, which is not
 /// positive).
 #[inline]
 #[must_use]

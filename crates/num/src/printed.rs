@@ -1,11 +1,12 @@
-//! Numbers as C++ streams print them by default, `%g` with six significant digits (`oracle-behavior.md`, head), and in
+//! Prints numbers as C++ streams do by default, `%g` with six significant digits (`oracle-behavior.md`, head), and in
 //! the shortest exact form.
 
 /// The number of significant digits of C++ streams.
 const DIGITS: i32 = 6;
 
-/// Returns `%g` with six significant digits as glibc prints it: `0`, `-0`, `1e-05`, `0.00282843`, `1e+06`, `inf`,
-/// `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to even, as the library does.
+/// Returns the number in the format `%g` with six significant digits, as printed by glibc: `0`, `-0`, `1e-05`,
+/// `0.00282843`, `1e+06`, `inf`, `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to
+/// even, as the library does.
 #[must_use]
 pub fn general(value: f64) -> String {
     let sign = if value.is_sign_negative() { "-" } else { "" };
@@ -18,7 +19,7 @@ pub fn general(value: f64) -> String {
     if value == 0.0 {
         return format!("{sign}0");
     }
-    // The exponent that decides between the two notations is the one after rounding (999999.5 is 1e+06).
+    // The exponent after rounding decides between the two notations (999999.5 is 1e+06).
     let scientific = format!("{:.5e}", value.abs());
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
     let exponent: i32 = exponent.parse().unwrap_or(0);
@@ -34,7 +35,7 @@ pub fn general(value: f64) -> String {
     }
 }
 
-/// Returns the shortest text that reads back as the same bits, with an exponent where it would be long otherwise:
+/// Returns the shortest text that reads back as the same bits, with an exponent if it would be long otherwise:
 /// `-0.1875`, `1e-12`, `nan`, `-nan`, `inf`.
 #[must_use]
 pub fn exact(value: f64) -> String {
@@ -48,7 +49,7 @@ pub fn exact(value: f64) -> String {
     }
 }
 
-/// Returns the digits `d.ddd` times ten to the `exponent` without an exponent.
+/// Returns the digits `d.ddd` times ten to the power of `exponent`, written without an exponent.
 fn positional(digits: &str, exponent: i32) -> String {
     if exponent < 0 {
         let zeros = "0".repeat(exponent.unsigned_abs() as usize - 1);

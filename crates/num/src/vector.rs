@@ -1,6 +1,6 @@
 //! Two-dimensional vectors with the original's order of operations.
 //!
-//! They are nalgebra's, whose sums, products and inner product are rounded as the specification requires
+//! The vectors are nalgebra's, whose sums, products and inner product are rounded as the specification requires
 //! (`simulation.md`, conventions). **No code divides or normalizes them with nalgebra's operations**: the original
 //! multiplies by the reciprocal where a library divides each component. Use [`over`] and [`unit`](fn@unit); the lints
 //! of the numeric crates enforce this.
@@ -9,7 +9,7 @@ use nalgebra::{MatrixView2xX, Vector2};
 /// A point or a direction in the plane, in the scene's length unit; x to the right, y up.
 pub type Vec2 = Vector2<f64>;
 
-/// Returns `v / s` as the original evaluates it: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
+/// Returns `v / s`, evaluated like the original: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
 #[inline]
 #[must_use]
 pub fn over(v: Vec2, s: f64) -> Vec2 {
@@ -17,14 +17,14 @@ pub fn over(v: Vec2, s: f64) -> Vec2 {
     Vec2::new(reciprocal * v.x, reciprocal * v.y)
 }
 
-/// Returns the length `sqrt(x*x + y*y)`, without rescaling: it over- and underflows where the squares do.
+/// Returns the length `sqrt(x*x + y*y)`, without rescaling, so it overflows and underflows with the squares.
 #[inline]
 #[must_use]
 pub fn length(v: Vec2) -> f64 {
     (v.x * v.x + v.y * v.y).sqrt()
 }
 
-/// Returns `v` divided by its length, by way of the reciprocal. The zero vector gives NaN components (`0 * inf`).
+/// Returns `v` divided by its length, using the reciprocal. The zero vector gives NaN components (`0 * inf`).
 #[inline]
 #[must_use]
 pub fn unit(v: Vec2) -> Vec2 {
@@ -32,14 +32,14 @@ pub fn unit(v: Vec2) -> Vec2 {
     Vec2::new(v.x * reciprocal, v.y * reciprocal)
 }
 
-/// Returns the positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with a column per
-/// particle. Nothing is copied.
+/// Returns the positions or velocities of a state, `x` and `y` of each particle in turn, as a matrix with one column
+/// per particle, without copying.
 #[must_use]
 pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
     MatrixView2xX::from_slice(values, values.len() / 2)
 }
 
-/// Returns whether two lists are equal bit for bit.
+/// Returns whether two lists are identical, bit for bit.
 #[inline]
 #[must_use]
 pub fn same_bits(one: &[f64], other: &[f64]) -> bool {
@@ -75,7 +75,7 @@ mod tests {
         (-1e3..1e3, -1e3..1e3).prop_map(|(x, y)| Vec2::new(x, y))
     }
 
-    /// Five thirds are one rounding less by way of the reciprocal than by division.
+    /// With the reciprocal, five thirds are one rounding smaller than with a division.
     #[test]
     fn a_vector_is_divided_by_way_of_the_reciprocal() {
         let reciprocal = 1.0 / 3.0;
@@ -98,7 +98,7 @@ mod tests {
             ..ProptestConfig::default()
         })]
 
-        /// Sums and products, which the specification writes with scalars.
+        /// The sums and products are those of the components, as written in the specification.
         #[test]
         fn sums_and_products_are_those_of_the_components(a in vector(), b in vector(), s in -1e3..1e3) {
             prop_assert_eq!(bits(a + b), bits(Vec2::new(a.x + b.x, a.y + b.y)));
@@ -107,7 +107,7 @@ mod tests {
             prop_assert_eq!(a.dot(&b).to_bits(), (a.x * b.x + a.y * b.y).to_bits());
         }
 
-        /// An independent method must give the results of the original's order of operations.
+        /// An independent method must agree with the original's order of operations.
         #[test]
         fn the_solver_agrees_with_singular_values(list in prop::collection::vec(-1.0..1.0, 42)) {
             let (n, mut rhs) = (6, list[36..].to_vec());
@@ -118,7 +118,7 @@ mod tests {
             solve(matrix.clone().as_mut_slice(), &mut rhs, &mut Workspace::default());
             let found = DVector::from_column_slice(&rhs);
             prop_assert!((matrix * &found - target).amax() < 1e-13);
-            // The decomposition is iterative: it leaves a residual of up to 1e-11.
+            // The decomposition is iterative and leaves a residual of up to 1e-11.
             prop_assert!((found - expected).amax() < 1e-9);
         }
     }

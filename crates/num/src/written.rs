@@ -1,12 +1,12 @@
-//! Numbers in serialized values: they read back bit for bit, except the bits of a NaN.
+//! Serializes numbers so that they read back bit for bit, except the bits of a NaN.
 //!
-//! Formats such as JSON have no numbers that are not finite; these are written as C++ prints them ([`general`]). Fields
-//! of numbers have `#[serde(with = "fosssim_num::written")]`.
+//! Formats such as JSON have no infinity and no NaN, so these are written as C++ prints them ([`general`]). Fields of
+//! numbers use `#[serde(with = "fosssim_num::written")]`.
 use super::{printed::general, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
 use std::borrow::Cow;
 
-/// A number in its serialized form: `nan`, `-nan`, `inf` and `-inf` are texts.
+/// A number in its serialized form, in which `nan`, `-nan`, `inf` and `-inf` are texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Number(pub f64);
 
@@ -47,13 +47,13 @@ impl schemars::JsonSchema for Number {
     }
 }
 
-/// A type that is made of numbers and written as such.
+/// A type that consists of numbers and is serialized as numbers.
 pub trait WrittenNumbers: Sized {
     /// The value's serialized form.
     type Form: Serialize + DeserializeOwned;
-    /// Writes the value in its form.
+    /// Converts the value to its serialized form.
     fn write(&self) -> Self::Form;
-    /// Reads the value out of its form.
+    /// Converts the serialized form back to the value.
     fn read(form: Self::Form) -> Self;
 }
 
@@ -107,18 +107,18 @@ impl<T: WrittenNumbers> WrittenNumbers for Option<T> {
     }
 }
 
-/// Serializes for serde's `with`.
+/// Serializes a value, for serde's `with`.
 ///
 /// # Errors
-/// Those of the serializer.
+/// The errors of the serializer.
 pub fn serialize<T: WrittenNumbers, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
     value.write().serialize(serializer)
 }
 
-/// Deserializes for serde's `with`.
+/// Deserializes a value, for serde's `with`.
 ///
 /// # Errors
-/// Those of the deserializer, and where a text is no number.
+/// The errors of the deserializer, and texts that are not numbers.
 pub fn deserialize<'de, T: WrittenNumbers, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     T::Form::deserialize(deserializer).map(T::read)
 }

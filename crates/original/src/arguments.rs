@@ -1,15 +1,15 @@
-//! The original's command line (oracle-behavior.md 1): the parsed arguments, or the words and exit code of an error.
+//! The original's command line (oracle-behavior.md 1): the parsed arguments, or the message and exit code of an error.
 //!
-//! Words are bytes: file names that are not UTF-8 pass through. The rules are those of the argument library that the
-//! original uses: value and flag are separate words, the first word that makes no sense ends the program, `--help` and
-//! `--version` take effect in their order.
+//! Words are bytes, so file names may be other than UTF-8. The rules are those of the original's argument library:
+//! value and flag are separate words, the first invalid word ends the program, and `--help` and `--version` take effect
+//! in order.
 use crate::{
     flags::{FLAGS, Flag},
     usage,
 };
 use std::{ffi::OsString, os::unix::ffi::OsStringExt};
 
-/// The arguments, parsed.
+/// The parsed arguments.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Arguments {
     pub(crate) scene: OsString,
@@ -20,7 +20,7 @@ pub(crate) struct Arguments {
     pub(crate) movie: Option<OsString>,
 }
 
-/// The end of the program without a run.
+/// The result of a command line that ends the program without a run.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub(crate) struct Ending {
     pub(crate) stdout: Vec<u8>,
@@ -28,7 +28,7 @@ pub(crate) struct Ending {
     pub(crate) exit_code: u8,
 }
 
-/// Reads the words after the program's name.
+/// Parses the words after the program's name.
 ///
 /// # Errors
 /// The text to print, and the exit code: help, version, or a parse error.
@@ -40,7 +40,7 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
             b"--" | b"--ignore_rest" => break,
             b"-h" | b"--help" => return Err(Ending { stdout: usage::help(program), ..Ending::default() }),
             b"--version" => return Err(Ending { stdout: usage::version(program), ..Ending::default() }),
-            // The library takes these for bundles of flags that are all used up.
+            // The library treats these words as bundles of flags that are used up.
             b"" | b"-" => continue,
             _ => {}
         }
@@ -87,7 +87,7 @@ fn is(flag: &Flag, word: &[u8]) -> bool {
     }
 }
 
-/// Returns a boolean by stream extraction: one integer that is 0 or 1. An empty value is no value: the default stays.
+/// Returns a boolean like a C++ stream reads it: one integer that is 0 or 1. An empty value keeps the default.
 fn boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
     let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0x0b;
     let mut rest = value;

@@ -1,4 +1,4 @@
-//! The original's words about collisions that do not match (oracle-behavior.md 6.1).
+//! The original's messages about collisions that do not match (oracle-behavior.md 6.1).
 use fosssim_judge::replay::Remark;
 use fosssim_model::trace::LoggedImpulse;
 use fosssim_num::{printed::general, vector::Vec2};
@@ -6,7 +6,7 @@ use fosssim_num::{printed::general, vector::Vec2};
 /// The line above the collisions of a step.
 pub(crate) const HEADER: &str = "Collision Detection Error: \n";
 
-/// Returns the line about one collision; `None` when the remark is about polynomials.
+/// Returns the line about one collision; `None` if the remark is about polynomials.
 pub(crate) fn line(remark: &Remark) -> Option<String> {
     match remark {
         Remark::Missed(expected) => {
@@ -21,7 +21,7 @@ pub(crate) fn line(remark: &Remark) -> Option<String> {
     }
 }
 
-/// Returns `Particle A - Edge B with normal = X Y`; nothing for an unknown kind of pair.
+/// Returns `Particle A - Edge B with normal = X Y`; empty for an unknown kind of pair.
 fn describe(impulse: &LoggedImpulse) -> String {
     let Some(kind) = impulse.kind() else { return String::new() };
     let second = kind.second_of_original();
@@ -29,7 +29,7 @@ fn describe(impulse: &LoggedImpulse) -> String {
     format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
 }
 
-/// Returns both components; the first is padded to the length of the second, never the other way round.
+/// Returns both components; the first is padded to the length of the second, never the reverse.
 fn direction(normal: Vec2) -> String {
     let (x, y) = (general(normal.x), general(normal.y));
     format!("{x:>width$} {y}", width = y.len())

@@ -1,4 +1,4 @@
-//! The flags of the original.
+//! The command-line flags of the original.
 
 /// A flag with a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -14,7 +14,7 @@ const fn flag(letter: &'static str, name: &'static str, boolean: bool, help: &'s
     Flag { letter, name, boolean, required: false, help }
 }
 
-/// The flags in the order in which Theme 2's usage lists them.
+/// The flags in the order of Theme 2's usage text.
 pub(crate) const FLAGS: [Flag; 7] = [
     flag("m", "moviedir", false, "Folder for one SVG picture per step"),
     flag("i", "inputfile", false, "Binary trace to grade"),
@@ -25,14 +25,14 @@ pub(crate) const FLAGS: [Flag; 7] = [
     Flag { required: true, ..flag("s", "scene", false, "XML scene file to simulate") },
 ];
 
-/// The order in which Theme 1's usage lists them.
+/// The indices of the flags in the order of Theme 1's usage text.
 const THEME_1: [usize; FLAGS.len()] = [4, 0, 1, 2, 3, 5, 6];
 
-/// Returns the flags in the order in which the usage of a program of this name lists them.
+/// Returns the flags in the order of the usage text of a program named `program`.
 pub(crate) fn list_flags(program: &[u8]) -> impl Iterator<Item = &'static Flag> {
     let is_theme_1 = program.windows(NAME_1.len()).any(|part| part == NAME_1);
     (0..FLAGS.len()).map(move |place| &FLAGS[if is_theme_1 { THEME_1[place] } else { place }])
 }
 
-/// The beginning of the names of Theme 1's programs.
+/// The prefix of the names of Theme 1's programs.
 const NAME_1: &[u8] = b"FOSSSimOracleT1";

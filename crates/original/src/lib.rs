@@ -1,17 +1,17 @@
-//! The drop-in for the original program: its flags, its output, its files and its exit codes (oracle-behavior.md).
+//! The replacement for the original program, with its flags, output, files and exit codes (oracle-behavior.md).
 //!
-//! Where the original crashes, hangs or runs out of memory, or needs a window, a clear message goes to standard error
-//! and the exit code is 1. Files are written through, as the original does: a course's script may watch them, link
-//! them or read them while they grow.
+//! If the original would crash, hang, run out of memory or open a window, this program prints a message to standard
+//! error and exits with 1. Files are written in place like the original's, because a course's script may watch, link or
+//! read them while they grow.
 //!
-//! The original's words about an assignment's things (its version, its name for a collision type or the second object
-//! of a pair) are in `assignments`; the rest is the same for all assignments, and is here.
+//! The original's texts that depend on an assignment (its version, its name for a collision type or for the second
+//! object of a pair) are in `assignments`; the texts common to all assignments are here.
 //!
-//! A grader starts this once for every trace, and most scenes are small: then the time is that of loading the program's
-//! pages. This is therefore a crate of its own, compiled at the full level, and uses nothing that few runs need: its
-//! caller supplies the drawing of pictures and the words of messages ([`Services`]).
+//! A grader starts this program once per trace, and for small scenes most of the time is spent loading the program's
+//! pages. It is therefore a separate crate, compiled with full optimization, and excludes features that few runs need.
+//! Its caller provides pictures and messages ([`Services`]).
 //!
-//! A program becomes the drop-in by its name or its first word:
+//! A program becomes the replacement by its name or its first word:
 //!
 //! ```no_run
 //! use fosssim_original::{Pictures, Services};
@@ -56,12 +56,12 @@ use std::{
     process::ExitCode,
 };
 
-/// Names of the program that make it behave as the original, whatever follows in the name.
+/// The prefix of the program's names that make it behave like the original.
 const NAME: &[u8] = b"FOSSSimOracle";
 
-/// Returns the name that messages show, and the words for the drop-in, if it is meant: by the program's name
+/// Returns the name for messages, and the arguments, if the original is to be replaced: by the program's name
 /// `FOSSSimOracle...`, or by the first word, `original`.
-fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
+fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
     let program = program.as_bytes();
     let file = program.rsplit(|&byte| byte == b'/').next().unwrap_or_default();
@@ -72,13 +72,13 @@ fn meant(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     (first == "original").then(|| ([program, b" original"].concat(), rest))
 }
 
-/// Runs the drop-in, if the words of the command line mean it.
+/// Runs the replacement, if the command line requests it.
 ///
 /// # Errors
-/// Other words, for other commands; the program's own name first.
+/// The words of the command line for other commands, with the program's own name first.
 pub fn run_if_meant(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
     let words: Vec<OsString> = env::args_os().collect();
-    match meant(&words) {
+    match parse_call(&words) {
         Some((program, words)) => {
             outside.prepare();
             Ok(main(&program, words, outside))
@@ -87,35 +87,36 @@ pub fn run_if_meant(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
     }
 }
 
-/// The services that the drop-in needs from the program around it.
+/// The services that the replacement needs from the surrounding program.
 pub trait Services {
-    /// Prepares the run, before anything else is done.
+    /// Prepares the run, before any other work.
     fn prepare(&self);
 
-    /// Returns a drawer of pictures: of `-g 1` as PNG, of `-m DIR` as SVG in that folder.
+    /// Returns a drawer of pictures: PNG for `-g 1`, SVG in the folder of `-m DIR`.
     ///
     /// # Errors
-    /// The text to print, when a folder is missing.
+    /// The text to print, if a folder is missing.
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String>;
 }
 
-/// Draws after each step.
+/// Draws the state after each step.
 pub trait Pictures {
-    /// Draws the state after a step, from 1; positions as in [`State`](fosssim_model::sim::State).
+    /// Draws the state after a step, counted from 1; positions are in the order of
+    /// [`State`](fosssim_model::sim::State).
     ///
     /// # Errors
-    /// The text to print, when a picture can't be written.
+    /// The text to print, if a picture cannot be written.
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String>;
 }
 
-/// Runs the drop-in; `program` is the name that its messages show, `words` are the arguments.
+/// Runs the replacement; `program` is the name in its messages, `words` are the arguments.
 #[must_use]
 pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitCode {
     let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
     let code = match arguments::parse(program, &words) {
         Ok(arguments) => run::run(&arguments, &words, outside),
         Err(ending) => {
-            // Nobody listening, or a full disk, does not change the exit code; the original does not notice either.
+            // A closed output or a full disk does not change the exit code, because the original ignores both.
             let mut stdout = io::stdout().lock();
             drop(stdout.write_all(&ending.stdout).and_then(|()| stdout.flush()));
             complain(&ending.stderr);
@@ -125,7 +126,7 @@ pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitC
     ExitCode::from(code)
 }
 
-/// Prints to standard error; there is nowhere left to report a failure.
+/// Prints to standard error; a failure cannot be reported any more.
 fn complain(text: &[u8]) {
     drop(io::stderr().lock().write_all(text));
 }
@@ -136,16 +137,19 @@ mod tests {
 
     #[test]
     fn the_name_decides_by_its_beginning_and_not_by_its_folder() {
-        let meant = |words: &[&str]| {
+        let parse_call = |words: &[&str]| {
             let words: Vec<OsString> = words.iter().map(OsString::from).collect();
-            meant(&words).map(|(name, rest)| (String::from_utf8(name).unwrap(), rest.len()))
+            parse_call(&words).map(|(name, rest)| (String::from_utf8(name).unwrap(), rest.len()))
         };
-        assert_eq!(meant(&["FOSSSimOracle"]), Some(("FOSSSimOracle".to_owned(), 0)));
-        assert_eq!(meant(&["../bin/FOSSSimOracleT2M2", "-h"]), Some(("../bin/FOSSSimOracleT2M2".to_owned(), 1)));
-        assert_eq!(meant(&["x/fosssim-oracle", "original", "-h"]), Some(("x/fosssim-oracle original".to_owned(), 1)));
-        assert_eq!(meant(&["/opt/FOSSSimOracle/fosssim-oracle"]), None);
-        assert_eq!(meant(&["fosssim-oracle", "grade", "original"]), None);
-        assert_eq!(meant(&[""]), None);
-        assert_eq!(meant(&[]), None);
+        assert_eq!(parse_call(&["FOSSSimOracle"]), Some(("FOSSSimOracle".to_owned(), 0)));
+        assert_eq!(parse_call(&["../bin/FOSSSimOracleT2M2", "-h"]), Some(("../bin/FOSSSimOracleT2M2".to_owned(), 1)));
+        assert_eq!(
+            parse_call(&["x/fosssim-oracle", "original", "-h"]),
+            Some(("x/fosssim-oracle original".to_owned(), 1))
+        );
+        assert_eq!(parse_call(&["/opt/FOSSSimOracle/fosssim-oracle"]), None);
+        assert_eq!(parse_call(&["fosssim-oracle", "grade", "original"]), None);
+        assert_eq!(parse_call(&[""]), None);
+        assert_eq!(parse_call(&[]), None);
     }
 }

@@ -1,4 +1,4 @@
-//! Recording and grading as the original does them (oracle-behavior.md 2).
+//! Records and grades like the original (oracle-behavior.md 2).
 use crate::{
     Pictures, Services,
     arguments::Arguments,
@@ -10,7 +10,7 @@ use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_
 use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
-        LARGEST_IMPLICIT, LARGEST_SCENE, Scene,
+        MAX_IMPLICIT, MAX_SCENE_BYTES, Scene,
         original::{self, OriginalScene, Refusal, RefusalKind},
     },
     sim::{RootSearch, Simulation, State, StepError},
@@ -26,7 +26,7 @@ use std::{
 /// The exit code of every failure.
 const FAILED: u8 = 1;
 
-/// Runs with parsed arguments; `words` are the raw ones. Returns the exit code.
+/// Runs with parsed arguments; `words` are the raw arguments. Returns the exit code.
 pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Services) -> u8 {
     if arguments.input.is_some() && arguments.output.is_some() {
         return complain(INPUT_AND_OUTPUT);
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
                 }
                 return grade(&scene.scene, trace, transcript);
             }
-            // The original names the third word of the command line instead of the file.
+            // The original prints the third word of the command line instead of the file's name.
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
             crate::complain(&not_opened("input", third_word));
             transcript.print_not_opened();
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
     }
 }
 
-/// Ends a run whose folder for pictures is missing: the original notices it after the first record.
+/// Ends a run whose folder for pictures is missing; the original detects that after the first record.
 fn without_folder(
     arguments: &Arguments,
     identity: Identity,
@@ -105,7 +105,7 @@ fn complain(text: impl AsRef<[u8]>) -> u8 {
     FAILED
 }
 
-/// Reads the scene as the original does. A directory opens and reads as empty text.
+/// Reads the scene like the original. A directory can be opened and reads as empty text.
 fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
     let name = Path::new(&arguments.scene);
     let unreadable = || Refusal::unreadable(arguments.scene.as_bytes());
@@ -113,7 +113,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
     let bytes = if metadata.is_dir() {
         Vec::new()
     } else {
-        read_limited(file, &metadata, LARGEST_SCENE as u64).map_err(|error| Refusal {
+        read_limited(file, &metadata, MAX_SCENE_BYTES as u64).map_err(|error| Refusal {
             kind: RefusalKind::Undefined,
             stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
             exit_code: FAILED,
@@ -125,7 +125,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
 
 fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
     if refusal.kind == RefusalKind::Crash {
-        // The original dies of an uncaught exception here.
+        // The original crashes with an uncaught exception in this case.
         let name = arguments.scene.display();
         return complain(format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
     }
@@ -133,18 +133,18 @@ fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
     refusal.exit_code
 }
 
-/// Returns the reason why this run is not supported: a window, a picture, or very much memory.
+/// Returns the reason why a run is not supported: a window, a picture, or too much memory.
 fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }
     let particles = scene.particles.len();
-    (scene.integrator.is_implicit() && particles > LARGEST_IMPLICIT).then(|| {
-        format!("{particles} particles are too many for an implicit integrator, which can have {LARGEST_IMPLICIT}\n")
+    (scene.integrator.is_implicit() && particles > MAX_IMPLICIT).then(|| {
+        format!("{particles} particles are too many for an implicit integrator, which can have {MAX_IMPLICIT}\n")
     })
 }
 
-/// Creates the trace.
+/// Creates the file of the trace.
 fn create(name: &Path, scene: Identity) -> Result<File, Vec<u8>> {
     if fs::metadata(name).is_ok_and(|metadata| Identity::from_metadata(&metadata) == scene) {
         let text = format!("{} is the scene itself; choose another name for the trace\n", name.display());
@@ -158,13 +158,13 @@ fn create_now(name: &Path) -> io::Result<File> {
     open_for_writing(OpenOptions::new().write(true).create(true).truncate(true), name)
 }
 
-/// Opens the trace; a directory opens and reads as an empty file.
+/// Opens the trace; a directory can be opened and reads as an empty file.
 fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
     let (file, metadata) = open_for_reading(name)?;
     if metadata.is_dir() { Ok(Box::new(io::empty())) } else { patient(file, &metadata) }
 }
 
-/// Simulates, and records into `file`.
+/// Simulates a scene, and records it into `file`.
 fn simulate<W: Write>(
     scene: &Scene,
     file: W,
@@ -197,13 +197,13 @@ fn simulate<W: Write>(
     drop(transcript.finish());
     match (stopped, written) {
         (Some(error), _) => step_failed(&error),
-        // The original would go on and claim that the trace was saved.
+        // The original would continue and claim that the trace was saved.
         (None, Err(error)) => complain(format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
     }
 }
 
-/// Draws the readable states of a trace; the grading reports what is wrong with it.
+/// Draws the readable states of a trace; the grading reports its faults.
 fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(), String> {
     if !fs::metadata(name).is_ok_and(|data| data.is_file()) {
         return Err("pictures of a trace (-g, -m with -i) need a file, which can be read twice\n".to_owned());
@@ -230,7 +230,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     if let Some(residuals) = residual_file(&outcome, scene.assignment().definition())
         && let Ok(mut file) = create_now(Path::new("residual.txt"))
     {
-        // Like the original, this follows links, truncates, and takes no notice of a failure.
+        // Like the original, this follows links, truncates, and ignores failures.
         drop(file.write_all(residuals.as_bytes()));
     }
     if let Some(error) = &outcome.parity.endless {
@@ -250,7 +250,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     }
 }
 
-/// Ends a run in which the original computes without end, or gives up.
+/// Ends a run in which the original computes endlessly or fails.
 fn step_failed(error: &StepError) -> u8 {
     match error {
         StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),

@@ -1,4 +1,4 @@
-//! The original's standard output as a state machine over events (oracle-behavior.md 3, 5, 6).
+//! The original's standard output, as a state machine over events (oracle-behavior.md 3, 5, 6).
 use crate::{
     collisions, verdict,
     words::{BLUE, GREEN, PINK, PLAIN, RED},
@@ -14,23 +14,23 @@ use std::{
     time::Instant,
 };
 
-/// The lines that the original shows above a run.
+/// The lines that the original prints above a run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Heading<'a> {
     /// The scene argument as typed.
     pub(crate) scene_name: &'a [u8],
     /// The scene.
     pub(crate) scene: &'a Scene,
-    /// The description as the file has it.
+    /// The description, as written in the file.
     pub(crate) description: &'a [u8],
     /// The task of the run.
     pub(crate) task: Task<'a>,
 }
 
-/// A task for the original.
+/// A task of the original.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task<'a> {
-    /// Simulate and keep nothing.
+    /// Simulate without output files.
     Run,
     /// Record a trace in this file.
     Record(&'a [u8]),
@@ -40,8 +40,8 @@ pub(crate) enum Task<'a> {
 
 /// Writes the original's standard output to a stream, event by event.
 ///
-/// Grading: hand it to `judge` as its [`Progress`], then call [`Transcript::graded`]. Recording and plain runs: call
-/// `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::completes`] and
+/// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::graded`]. For recording and plain runs,
+/// call `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::completes`] and
 /// [`Transcript::closes`]. The first error of the stream is kept until [`Transcript::finish`]; later text is dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
@@ -49,7 +49,7 @@ pub(crate) struct Transcript<'a, W: Write> {
     heading: Heading<'a>,
     steps: u32,
     threshold: f64,
-    /// The time that steps take, if the original prints it.
+    /// The clock of the steps, if the original prints their times.
     clock: Option<Clock>,
     error: Option<io::Error>,
 }
@@ -61,7 +61,7 @@ struct Clock {
     frame: Instant,
 }
 
-/// A dot appears each time another fiftieth of the steps is done.
+/// The share of the steps after which another dot is printed.
 const DOT: f64 = 0.02;
 
 const BANNER: [&str; 7] = [
@@ -80,14 +80,14 @@ impl<'a, W: Write> Transcript<'a, W> {
         Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, clock: None, error: None }
     }
 
-    /// Notes that all steps are done.
+    /// Notes that all steps are completed.
     pub(crate) fn completes(&mut self) {
         self.print_dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;
         self.print_message(&format!("Simulation complete at time {}. Exiting.", general(time)));
     }
 
-    /// Prints the exit handler's line of a run without a verdict: the file is closed.
+    /// Prints the exit handler's line of a run without a verdict, after the file is closed.
     pub(crate) fn closes(&mut self) {
         match self.heading.task {
             Task::Run => {}
@@ -108,12 +108,11 @@ impl<'a, W: Write> Transcript<'a, W> {
                 self.write(text.as_bytes());
             }
             Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
-                // The original never switches this color off.
+                // The original never resets this color.
                 let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
                 self.write(text.as_bytes());
             }
-            // Here the original dies or hangs; the reason is for standard error, but the run is closed in an orderly
-            // way.
+            // The original crashes or hangs here; the reason goes to standard error, but the run is closed normally.
             Some(
                 Stop::Trace { cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io, .. } | Stop::Step(_),
             ) => self.write(b"\n"),
@@ -125,12 +124,12 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(verdict::lines(outcome, collisions).as_bytes());
     }
 
-    /// Prints the exit handler's lines when the trace could not even be opened; no banner comes before them.
+    /// Prints the exit handler's lines if the trace could not be opened, in which case there is no banner.
     pub(crate) fn print_not_opened(&mut self) {
         self.write(verdict::incomplete(&Residuals::default()).as_bytes());
     }
 
-    /// Flushes and gives the stream back.
+    /// Flushes and returns the stream.
     ///
     /// # Errors
     /// The first error of the stream.
@@ -157,7 +156,7 @@ impl<'a, W: Write> Transcript<'a, W> {
             Task::Record(file) => self.print_message_about("Saving simulation to: ", file, ""),
             Task::Grade(file) => self.print_message_about("Benchmarking simulation in: ", file, ""),
         }
-        if scene.assignment().definition().tells_times {
+        if scene.assignment().definition().prints_times {
             let now = Instant::now();
             self.clock = Some(Clock { start: now, frame: now });
             self.write(b"T: 0\nFrame run time: 0s. Total run time: 0s. \n");
@@ -165,7 +164,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("{PINK}Progress: {PLAIN}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
     }
 
-    /// Ends a step: prints the time that it took, where the original does.
+    /// Ends a step, and prints the time that it took if the original does.
     pub(crate) fn step_ends(&mut self, step: u32) {
         let Some(clock) = &mut self.clock else { return };
         let now = Instant::now();
@@ -175,7 +174,8 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("T: {time}\nFrame run time: {frame}s. Total run time: {total}s. \n").as_bytes());
     }
 
-    /// Prints a dot when the next threshold is reached; never more than one. Without steps the quotient is NaN: no dot.
+    /// Prints a dot when the next threshold is reached; never more than one. Without steps the quotient is NaN, and
+    /// there is no dot.
     fn print_dot(&mut self, steps_done: u32) {
         if f64::from(steps_done) / f64::from(self.steps) >= self.threshold {
             self.threshold += DOT;
@@ -215,7 +215,8 @@ impl<W: Write> Progress for Transcript<'_, W> {
     fn step_begins(&mut self, step: u32) {
         self.print_dot(step.saturating_sub(1));
         if self.clock.is_some() {
-            // The original prints these before it reads the step's record. The parts of a step are not measured here.
+            // The original prints these lines before it reads the step's record. The parts of a step are not measured
+            // here.
             self.write(b"Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\n");
         }
     }
@@ -295,7 +296,7 @@ mod tests {
         }
     }
 
-    /// Returns the transcript of `scene`, from `Progress` on.
+    /// Returns the transcript of `scene` from the first event on.
     fn after_heading(scene: &Scene, task: Task<'_>, act: impl FnOnce(&mut Transcript<'_, Vec<u8>>)) -> String {
         let heading = Heading { scene_name: b"s.xml", scene, description: b"none", task };
         let mut transcript = Transcript::new(Vec::new(), heading);

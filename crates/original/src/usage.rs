@@ -33,7 +33,7 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
     text
 }
 
-/// Returns the output of a parse error; `argument` is a space if the error belongs to no argument.
+/// Returns the output of a parse error; `argument` is a space if the error does not belong to an argument.
 pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
     text.extend(brief(program));
@@ -50,7 +50,7 @@ fn brief(program: &[u8]) -> Vec<u8> {
         line.extend(entry.as_bytes());
     }
     line.extend(b" [--] [--version] [-h]");
-    // Long program names do not push the following lines off the page.
+    // Long program names do not push the following lines beyond the page.
     wrap(&line, 3, (program.len() + 2).min(WIDTH / 2))
 }
 
@@ -58,8 +58,8 @@ const fn kind(flag: &Flag) -> &'static str {
     if flag.boolean { "boolean" } else { "string" }
 }
 
-/// Breaks a text at spaces, commas and bars so that lines have at most [`WIDTH`] columns: `indent` spaces before the
-/// first line, `further` more before the others. Words that do not fit are split where the line ends.
+/// Breaks a text at spaces, commas and bars so that lines have at most [`WIDTH`] columns. The first line has `indent`
+/// leading spaces, the others `further` more. Words that do not fit are split at the end of the line.
 fn wrap(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
     let mut lines = Vec::new();
     let mut indent = indent;
@@ -74,7 +74,8 @@ fn wrap(text: &[u8], indent: usize, further: usize) -> Vec<u8> {
     while !rest.is_empty() {
         let mut length = rest.len().min(allowed);
         if length == allowed {
-            // The byte after the line decides, too: a break there needs no shorter line. Past the end there is a NUL.
+            // The byte after the line counts as well, because a break there needs no shorter line. After the end there
+            // is a NUL.
             let breaks = |at: usize| matches!(rest.get(at), Some(b' ' | b',' | b'|'));
             length = (0..=allowed).rev().find(|&at| breaks(at)).unwrap_or(0);
             if length == 0 {

@@ -1,4 +1,4 @@
-//! The original's closing words about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
+//! The original's closing text about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
 use crate::words::{PINK, PLAIN};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;
@@ -12,7 +12,7 @@ const NAMES: [&str; 4] = [
     "Maximum Velocity Residual",
 ];
 
-/// Returns the lines after the file has been closed: with verdict, or without one when grading did not come to its end.
+/// Returns the lines after the file has been closed, with a verdict, or without one if grading did not finish.
 /// `collisions` is the assignment's name for the verdict on collisions.
 pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     if outcome.parity.overall == Overall::None {
@@ -41,8 +41,8 @@ pub(crate) fn incomplete(residuals: &Residuals) -> String {
     text
 }
 
-/// Returns the text of `residual.txt`: per residual `1` or `0`, three spaces, the value; in the contest a line about
-/// collisions, too. `None` when grading did not come to its end; the file is not written then.
+/// Returns the text of `residual.txt`: per residual `1` or `0`, three spaces, and the value; in the contest also a line
+/// about collisions. `None` if grading did not finish; the file is then not written.
 #[must_use]
 pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Option<String> {
     if outcome.parity.overall == Overall::None {
@@ -50,7 +50,7 @@ pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Optio
     }
     let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), general(value));
     let mut text: String = outcome.parity.residuals.with_bounds().into_iter().map(line).collect();
-    if assignment.tells_times {
+    if assignment.prints_times {
         text += &format!("{}\n", u8::from(outcome.parity.collisions_passed == Some(true)));
     }
     Some(text)

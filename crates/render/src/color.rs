@@ -1,21 +1,21 @@
-//! Colors of scenes, and contrasting ones.
+//! The colors of scenes, and contrasting colors.
 use fosssim_model::scene;
 
-/// A color, eight bits per component.
+/// A color with eight bits per component.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Rgb(pub [u8; 3]);
 
 impl Rgb {
-    /// White, the background of scenes that name none.
+    /// White, the default background of scenes.
     pub const WHITE: Self = Self([255; 3]);
-    /// Black, the color of half-planes that name none.
+    /// Black, the default color of half-planes.
     pub const BLACK: Self = Self([0; 3]);
-    /// The color of particles that name none (scene-format.md 4).
+    /// The default color of particles (scene-format.md 4).
     pub const PARTICLE: Self = Self([166, 75, 0]);
-    /// The color of edges that name none (scene-format.md 4).
+    /// The default color of edges (scene-format.md 4).
     pub const EDGE: Self = Self([0, 99, 99]);
 
-    /// Returns the color between this one and another, `share` of 8 parts of it.
+    /// Returns a mixture of this color and `other`, with `share` of 8 parts of `other`.
     #[must_use]
     pub fn towards(self, other: Self, share: u8) -> Self {
         let part = |own: u8, other: u8| {
@@ -32,13 +32,13 @@ impl Rgb {
         (2126 * red + 7152 * green + 722 * blue) / 10_000
     }
 
-    /// Returns black or white, whichever can be read on this background.
+    /// Returns black or white, whichever is readable on this background.
     #[must_use]
     pub fn ink(self) -> Self {
         if self.brightness() > 127 { Self::BLACK } else { Self::WHITE }
     }
 
-    /// Returns `#rrggbb`
+    /// Returns the color as `#rrggbb`.
     #[must_use]
     pub fn hex(self) -> String {
         let [red, green, blue] = self.0;
@@ -48,7 +48,7 @@ impl Rgb {
 
 impl From<scene::Color> for Rgb {
     fn from(color: scene::Color) -> Self {
-        // Out of range and NaN can't come from a reader, and saturate.
+        // A reader returns no NaN and no value out of range; others are clamped.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
         let part = |value: f64| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
         Self([part(color.red), part(color.green), part(color.blue)])

@@ -1,11 +1,12 @@
-//! A detection call as a picture: the assignment's figure 2 with the numbers of the pair.
-use crate::plot::{Embedding, PlottedPolynomial, PolynomialPlot};
+//! A detection call as a picture, like the assignment's figure 2, with the numbers of the pair.
+use crate::plot::{PlotTarget, PlottedPolynomial, PolynomialPlot};
 use fosssim_judge::study::Study;
 
-/// Returns the polynomials of a call on the step, the intervals in which each and all are positive, and the time of
-/// impact. If the mathematically right approach polynomial differs, it has no part in the decision and is not shown.
+/// Returns a picture of a call's polynomials on the step, the intervals in which each and all are positive, and the
+/// time of impact. A different mathematically right approach polynomial is not shown, because the decision does not
+/// depend on it.
 #[must_use]
-pub fn picture(study: &Study, title: &str, embedding: Embedding) -> String {
+pub fn picture(study: &Study, title: &str, embedding: PlotTarget) -> String {
     let curves = study.curves.iter().map(|curve| PlottedPolynomial {
         name: curve.role.to_string(),
         coefficients: curve.logged.coefficients(),

@@ -1,12 +1,12 @@
-//! A few letters of five by seven dots, so that pictures need no fonts of the machine.
+//! Letters of five by seven dots, so that pictures need no fonts of the machine.
 
-/// Width of a letter in dots, the gap behind it included.
+/// The width of a letter in dots, including the gap after it.
 pub const ADVANCE: u32 = 6;
 
-/// Height of a letter in dots.
+/// The height of a letter in dots.
 pub const HEIGHT: u32 = 7;
 
-/// Returns the rows of a letter, from the top; the highest of five bits is the leftmost dot. Nothing for an unknown
+/// Returns the rows of a letter, from the top; the highest of five bits is the leftmost dot. `None` for an unknown
 /// letter.
 #[rustfmt::skip]
 pub const fn rows(letter: char) -> Option<[u8; HEIGHT as usize]> {

@@ -1,13 +1,12 @@
-//! Scenes, traces and detections as pictures: SVG, PNG, GIF and plots.
+//! Draws scenes, traces and detections: SVG, PNG, GIF and plots.
 //!
-//! Everything is a pure function from states and findings to bytes, or an encoder that is fed picture by picture:
-//! nothing here opens a file, starts a process or reads a clock, and no more than two pictures are held at a time. The
-//! same input gives the same bytes on every run: no fonts of the machine, no threads, no vector instructions chosen at
-//! run time.
+//! The functions turn states and findings into bytes, or encode picture by picture. They open no file, start no process
+//! and read no clock, and hold at most two pictures at a time. The same input gives the same bytes on every run,
+//! because there are no fonts of the machine, no threads, and no vector instructions chosen at run time.
 //!
-//! `Painter` turns the positions of a motion into [`shape::Shape`]s, `svg` or `raster` draws these, and `film` joins
-//! the pictures. Plots are SVG made of numbers; they distinguish series by dash and marker and not by color alone, and
-//! need no script.
+//! `Painter` turns the positions of a motion into [`shape::Shape`]s, `svg` or `raster` draws the shapes, and `film`
+//! joins the pictures. Plots are SVG drawn from numbers. They distinguish series by dash and marker as well as by
+//! color, and need no script.
 //!
 //! ```
 //! use fosssim_render::{Extent, Painter, PictureOptions, Size, svg};

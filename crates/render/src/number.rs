@@ -1,6 +1,7 @@
-//! Numbers as labels: few digits, no noise.
+//! Formats numbers for labels, with few digits.
 
-/// Formats a number with at most six significant digits, no zeros at the end: `0.14`, `-1.5`, `1e-9`, `2.5e12`, `nan`.
+/// Formats a number with at most six significant digits, without trailing zeros: `0.14`, `-1.5`, `1e-9`, `2.5e12`,
+/// `nan`.
 #[must_use]
 pub fn short(value: f64) -> String {
     if !value.is_finite() {
@@ -20,12 +21,12 @@ pub fn short(value: f64) -> String {
     format!("{}e{power}", trim_zeros(mantissa))
 }
 
-/// Removes zeros after the point.
+/// Removes trailing zeros after the point.
 fn trim_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// Returns a coordinate in pixels: two decimals at most, never `-0`.
+/// Formats a coordinate in pixels, with at most two decimals, never `-0`.
 #[must_use]
 pub fn pixel(value: f64) -> String {
     let text = format!("{value:.2}");

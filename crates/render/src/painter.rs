@@ -1,4 +1,4 @@
-//! From the positions of a scene's bodies to the shapes of a picture.
+//! Converts the positions of a scene's bodies to the shapes of a picture.
 use crate::{
     clip::ClipRectangle,
     color::Rgb,
@@ -11,24 +11,24 @@ use fosssim_model::scene::{Color, Scene};
 use fosssim_num::vector::{Vec2, at};
 use std::collections::VecDeque;
 
-/// Discs and lines are at least so wide, in pixels, or they would vanish.
-const THINNEST: f64 = 1.5;
+/// The minimum width of discs and lines, in pixels; otherwise they would be invisible.
+const MIN_WIDTH: f64 = 1.5;
 
 /// The visible depth of a half-plane's inside.
-const INSIDE: f64 = 0.25;
+const INSIDE_DEPTH: f64 = 0.25;
 
-/// Discs of more pixels than this are drawn as the half-plane that they are where they can be seen.
-const HUGE: f64 = 100_000.0;
+/// The radius in pixels above which discs are drawn as half-planes, which is how they look in the picture.
+const MAX_DISC_RADIUS: f64 = 100_000.0;
 
-/// The greatest number of points drawn of a particle's path; of older ones some are dropped.
-const LONGEST_PATH: usize = 2000;
+/// The maximum number of points drawn of a particle's path; some of the older points are dropped.
+const MAX_PATH_POINTS: usize = 2000;
 
-/// The parts of a picture besides the bodies.
+/// The options of a picture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PictureOptions {
     /// The size of the picture.
     pub size: Size,
-    /// Whether step and time are in the lower left corner.
+    /// Whether the step and the time are shown in the lower left corner.
     pub label: bool,
 }
 
@@ -46,22 +46,23 @@ pub struct Painter {
     trails: Vec<Trail>,
 }
 
-/// The path that a particle leaves behind.
+/// The path of a particle.
 #[derive(Debug, Clone)]
 struct Trail {
     particle: usize,
     color: Rgb,
     duration: f64,
-    /// Times and places, oldest first.
+    /// Times and positions, oldest first.
     points: VecDeque<(f64, Vec2)>,
 }
 
 impl Painter {
-    /// Creates a painter whose pictures hold all of `extent`, or show the scene's own viewport.
+    /// Creates a painter whose pictures show all of `extent`, or the scene's own viewport.
     #[must_use]
     pub fn new(scene: &Scene, extent: &Extent, options: PictureOptions) -> Self {
         let display = &scene.display;
-        // Later elements win; indices that name nothing are the original's undefined behavior and color nothing.
+        // Later elements override earlier ones; invalid indices are the original's undefined behavior and color
+        // nothing.
         let colored = |count: usize, default: Rgb, list: &[(usize, Color)]| {
             let mut colors = vec![default; count];
             for &(index, color) in list {
@@ -107,7 +108,7 @@ impl Painter {
         self.background
     }
 
-    /// Returns all colors that pictures are made of, the background first.
+    /// Returns all colors in the pictures, the background first.
     #[must_use]
     pub fn colors(&self) -> Vec<Rgb> {
         let mut colors = vec![self.background, self.background.ink(), self.overlay_color()];
@@ -125,11 +126,11 @@ impl Painter {
         if self.background.brightness() > 127 { Rgb([178, 0, 110]) } else { Rgb([255, 140, 220]) }
     }
 
-    /// Returns the picture after `step`, at these positions (2N, trace order), with a second motion's on top. Pictures
-    /// must be requested in the order of the steps, because particles leave paths.
+    /// Returns the picture after `step` at `positions` (2N, trace order), with those of a second motion on top.
+    /// Pictures must be requested in the order of the steps, because particles have trails.
     ///
     /// # Panics
-    /// When there are fewer positions than the scene has particles.
+    /// If there are fewer positions than the scene has particles.
     #[must_use]
     pub fn picture(&mut self, step: u32, positions: &[f64], overlay: Option<&[f64]>) -> Vec<Shape> {
         let time = f64::from(step) * self.time_step;
@@ -152,7 +153,7 @@ impl Painter {
         shapes
     }
 
-    /// Edges and particles: in their own colors, or all of them as an overlay's thin outlines.
+    /// Draws edges and particles: in their own colors, or all of them as an overlay's thin outlines.
     fn draw_bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
         for &(ends, radius, color) in &self.edges {
             let [first, second] = ends.map(|end| at(positions, end));
@@ -164,7 +165,7 @@ impl Painter {
         }
     }
 
-    /// Returns the picture's rectangle, widened by this number of pixels.
+    /// Returns the picture's rectangle, widened by `margin` pixels.
     fn frame(&self, margin: f64) -> ClipRectangle {
         let size = self.size();
         ClipRectangle {
@@ -175,7 +176,7 @@ impl Painter {
 
     fn draw_disc(&self, center: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
         let place = self.view.place(center);
-        let radius = self.view.length(radius).max(THINNEST);
+        let radius = self.view.length(radius).max(MIN_WIDTH);
         if !place.iter().all(|value| value.is_finite()) || !radius.is_finite() {
             return;
         }
@@ -186,14 +187,14 @@ impl Painter {
         if distance > radius {
             return;
         }
-        if radius < HUGE {
+        if radius < MAX_DISC_RADIUS {
             shapes.push(Shape::Disc { center: place, radius, paint });
             return;
         }
         if matches!(paint, Paint::Dashed(_)) {
             return;
         }
-        // Its edge looks straight here, and is perpendicular to the way from its center.
+        // Its edge looks straight here, and is perpendicular to the direction from its center.
         let points = match distance > 0.0 {
             true => {
                 let unit = [away[0] / distance, away[1] / distance];
@@ -206,7 +207,7 @@ impl Painter {
 
     fn edge(&self, first: Vec2, second: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
         let wide = 2.0 * self.view.length(radius);
-        let width = if wide.is_nan() { THINNEST } else { wide.clamp(THINNEST, HUGE) };
+        let width = if wide.is_nan() { MIN_WIDTH } else { wide.clamp(MIN_WIDTH, MAX_DISC_RADIUS) };
         let frame = self.frame(width);
         if let Some(ends) = frame.line(self.view.place(first), self.view.place(second)) {
             shapes.push(Shape::Line { points: ends.to_vec(), width, paint });
@@ -225,9 +226,9 @@ impl Painter {
         let above = |[x, y]: Point| (x - place[0]) * unit[0] + (y - place[1]) * unit[1];
         let points = self.frame(4.0).side(|point| -above(point));
         if points.len() > 2 {
-            shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE) });
+            shapes.push(Shape::Area { points, paint: Paint::Faint(color, INSIDE_DEPTH) });
         }
-        // The visible part of the boundary: through its point nearest to the middle of the picture.
+        // The visible part of the boundary, around its point nearest to the middle of the picture.
         let size = self.size();
         let middle = [0.5 * f64::from(size.width()), 0.5 * f64::from(size.height())];
         let off = above(middle);
@@ -248,12 +249,12 @@ impl Painter {
 }
 
 impl Trail {
-    /// Continues the path to the particle's new place.
+    /// Continues the path to the particle's new position.
     fn extend(&mut self, time: f64, place: Vec2) {
         while self.points.front().is_some_and(|&(then, _)| !(time - then <= self.duration)) {
             self.points.pop_front();
         }
-        if self.points.len() >= LONGEST_PATH {
+        if self.points.len() >= MAX_PATH_POINTS {
             let mut keep = false;
             self.points.retain(|_| {
                 keep = !keep;
@@ -263,13 +264,13 @@ impl Trail {
         self.points.push_back((time, place));
     }
 
-    /// Draws the path in pieces that are in the picture.
+    /// Draws the parts of the path that are in the picture.
     fn draw(&self, view: &View, frame: &ClipRectangle, shapes: &mut Vec<Shape>) {
         let mut piece: Vec<Point> = Vec::new();
         let mut finish = |piece: &mut Vec<Point>| {
             if piece.len() > 1 {
                 let points = std::mem::take(piece);
-                shapes.push(Shape::Line { points, width: THINNEST, paint: Paint::Solid(self.color) });
+                shapes.push(Shape::Line { points, width: MIN_WIDTH, paint: Paint::Solid(self.color) });
             }
             piece.clear();
         };
@@ -319,7 +320,7 @@ mod tests {
         let line =
             Shape::Line { points: vec![[100.0, 200.0], [300.0, 200.0]], width: 20.0, paint: Paint::Solid(Rgb::EDGE) };
         assert!(shapes.contains(&line), "{shapes:?}");
-        // The half-plane's inside is below its boundary, that is where y is larger.
+        // The half-plane's inside is below its boundary, where y is larger.
         let Shape::Area { points, .. } = &shapes[0] else { panic!("{shapes:?}") };
         assert!(points.iter().all(|point| point[1] >= 300.0), "{points:?}");
         let text = Shape::Text { place: [8.0, 392.0], text: "step 3  t 0.3".into(), color: Rgb::WHITE };

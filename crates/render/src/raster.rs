@@ -1,4 +1,5 @@
-//! Shapes as pixels, by tiny-skia without vector instructions: the same shapes give the same pixels on every run.
+//! Draws shapes as pixels, with tiny-skia without vector instructions, so that the same shapes give the same pixels on
+//! every run.
 use crate::{
     color::Rgb,
     font,
@@ -10,10 +11,10 @@ use tiny_skia::{FillRule, LineCap, LineJoin, PathBuilder, Pixmap, Rect, Stroke, 
 /// The width and height of a letter's dot, in pixels.
 const DOT: u32 = 2;
 
-/// Lengths of dashes and gaps, in pixels.
+/// The lengths of dashes and gaps, in pixels.
 const DASH: [f32; 2] = [6.0, 4.0];
 
-/// A picture in pixels; nothing shows through it.
+/// An opaque picture in pixels.
 #[derive(Debug, Clone)]
 pub struct Raster {
     size: Size,
@@ -21,10 +22,10 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Creates an empty picture, to be drawn on again and again.
+    /// Creates an empty picture, which can be drawn on repeatedly.
     ///
     /// # Panics
-    /// Never: a pixmap can have every [`Size`].
+    /// Never; a pixmap can have every [`Size`].
     #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = Pixmap::new(size.width(), size.height()).expect("sizes are checked");
@@ -43,7 +44,7 @@ impl Raster {
         self.pixels.data()
     }
 
-    /// Replaces the picture by these shapes.
+    /// Replaces the picture by the given shapes.
     pub fn draw(&mut self, background: Rgb, shapes: &[Shape]) {
         let [red, green, blue] = background.0;
         self.pixels.fill(tiny_skia::Color::from_rgba8(red, green, blue, 255));
@@ -113,7 +114,7 @@ impl Raster {
     }
 }
 
-/// Returns a coordinate as the drawing library takes it; shapes are near the picture.
+/// Converts a coordinate for the drawing library; shapes are near the picture.
 #[expect(clippy::cast_possible_truncation, reason = "pixels need no more digits")]
 fn narrow(value: f64) -> f32 {
     value as f32
@@ -163,7 +164,7 @@ mod tests {
         ]
     }
 
-    /// The product promises its pixels: equal on two runs, and on two machines of a kind.
+    /// The product promises equal pixels on two runs, and on two machines of the same kind.
     #[test]
     fn pixels_are_equal_on_every_run() {
         let mut raster = Raster::new(Size::new(64, 48).unwrap());

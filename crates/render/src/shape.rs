@@ -1,5 +1,5 @@
-//! The shapes that pictures are made of, in pixels from the upper left corner. All shapes are in or near the picture:
-//! far coordinates have been clipped, so that drawing libraries can handle them.
+//! The shapes of pictures, in pixels from the upper left corner. All shapes are in or near the picture, because far
+//! coordinates have been clipped for the drawing libraries.
 use crate::color::Rgb;
 
 /// A point in pixels.
@@ -8,9 +8,9 @@ pub type Point = [f64; 2];
 /// The paint of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
-    /// Filled, or a plain stroke.
+    /// A filled shape, or a plain stroke.
     Solid(Rgb),
-    /// As solid, with this opacity: 0 to 1.
+    /// A filled shape or stroke with an opacity from 0 to 1.
     Faint(Rgb, f64),
     /// A dashed outline, or a dashed stroke.
     Dashed(Rgb),
@@ -26,7 +26,7 @@ impl Paint {
     }
 }
 
-/// One thing in a picture.
+/// An element of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A disc; a dashed disc is an outline.

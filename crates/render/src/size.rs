@@ -2,26 +2,26 @@
 use std::{fmt, str::FromStr};
 
 /// The smallest width and height.
-pub const SMALLEST: u32 = 16;
+pub const MIN_SIDE: u32 = 16;
 
 /// The largest width and height.
-pub const LARGEST: u32 = 7680;
+pub const MAX_SIDE: u32 = 7680;
 
-/// Width and height in pixels, both sensible.
+/// The width and height of a picture, in pixels and within limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Size {
     width: u32,
     height: u32,
 }
 
-/// A size that is rejected.
+/// The reason why a size is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BadSize {
     /// The text is not two numbers.
-    #[error("`{0}` is no size; write WIDTHxHEIGHT as in 640x480")]
+    #[error("`{0}` is not a size; write WIDTHxHEIGHT, for example 640x480")]
     Unreadable(String),
-    /// Too small or too large.
-    #[error("{0}x{1} is no sensible size; width and height may be {SMALLEST} to {LARGEST} pixels")]
+    /// A side is too small or too large.
+    #[error("{0}x{1} is out of range; width and height must be {MIN_SIDE} to {MAX_SIDE} pixels")]
     OutOfRange(u32, u32),
 }
 
@@ -29,9 +29,9 @@ impl Size {
     /// Creates a size.
     ///
     /// # Errors
-    /// When a side is below [`SMALLEST`] or above [`LARGEST`].
+    /// If a side is below [`MIN_SIDE`] or above [`MAX_SIDE`].
     pub const fn new(width: u32, height: u32) -> Result<Self, BadSize> {
-        if width < SMALLEST || width > LARGEST || height < SMALLEST || height > LARGEST {
+        if width < MIN_SIDE || width > MAX_SIDE || height < MIN_SIDE || height > MAX_SIDE {
             return Err(BadSize::OutOfRange(width, height));
         }
         Ok(Self { width, height })

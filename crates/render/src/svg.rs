@@ -1,4 +1,4 @@
-//! Shapes as SVG: plain elements, fixed decimals, no scripts, no styles.
+//! Writes shapes as SVG: plain elements, fixed decimals, no scripts, no styles.
 use crate::{
     color::Rgb,
     number::pixel,
@@ -7,7 +7,7 @@ use crate::{
 };
 use std::fmt::Write;
 
-/// Renders a picture as an SVG document; `title` is for screen readers.
+/// Returns a picture as an SVG document; `title` is for screen readers.
 #[must_use]
 pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());
@@ -24,7 +24,7 @@ pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> S
     svg
 }
 
-/// Returns text as the content of an element or attribute. Characters that XML does not know become a replacement.
+/// Escapes a text for an element or attribute. Characters that XML does not allow are replaced.
 #[must_use]
 pub fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
@@ -36,7 +36,7 @@ pub fn escape(text: &str) -> String {
             '"' => safe += "&quot;",
             '\'' => safe += "&#39;",
             '\t' | '\n' => safe.push(' '),
-            // Marks that turn the reading direction could make a name look like another.
+            // Marks that change the reading direction could make a name look like another.
             '\u{0}'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
                 safe.push('\u{fffd}');
             }

@@ -1,4 +1,4 @@
-//! Which part of the plane a picture shows.
+//! The part of the plane that a picture shows.
 use crate::size::Size;
 use fosssim_model::scene::{Scene, Viewport};
 use fosssim_num::vector::Vec2;
@@ -6,13 +6,13 @@ use fosssim_num::vector::Vec2;
 /// The ratio of the picture's width to that of the bodies.
 const MARGIN: f64 = 1.1;
 
-/// Coordinates beyond this are left out when a view is fitted: their squares and sums are infinite.
-const FAR: f64 = 1e100;
+/// The largest coordinate for which a view is fitted; the squares and sums of larger ones are infinite.
+const MAX_PLACE: f64 = 1e100;
 
-/// The greatest factor by which bodies that leave the scene widen the view of the start.
-const WIDEST: f64 = 4.0;
+/// The maximum factor by which bodies that leave the scene widen the initial view.
+const MAX_WIDENING: f64 = 4.0;
 
-/// The smallest box around discs; empty at first.
+/// The smallest box around discs; initially empty.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     low: Vec2,
@@ -26,7 +26,7 @@ impl Default for Extent {
 }
 
 impl Extent {
-    /// Returns the box around a scene's particles at these positions, in trace order.
+    /// Returns the box around a scene's particles at `positions`, in trace order.
     #[must_use]
     pub fn for_scene(scene: &Scene, positions: &[f64]) -> Self {
         let mut extent = Self::default();
@@ -34,19 +34,19 @@ impl Extent {
         extent
     }
 
-    /// Widens the box so that it holds the particles at these positions, too.
+    /// Widens the box to contain the particles at `positions`.
     pub fn add(&mut self, scene: &Scene, positions: &[f64]) {
         for (particle, place) in scene.particles.iter().zip(positions.chunks_exact(2)) {
-            let radius = particle.radius.clamp(0.0, FAR);
-            // Bodies without a place in the plane (NaN) are not drawn.
-            if place.iter().all(|coordinate| coordinate.abs() < FAR) {
+            let radius = particle.radius.clamp(0.0, MAX_PLACE);
+            // Bodies without a position in the plane (NaN) are not drawn.
+            if place.iter().all(|coordinate| coordinate.abs() < MAX_PLACE) {
                 self.low = Vec2::new(self.low.x.min(place[0] - radius), self.low.y.min(place[1] - radius));
                 self.high = Vec2::new(self.high.x.max(place[0] + radius), self.high.y.max(place[1] + radius));
             }
         }
     }
 
-    /// Widens the box so that it holds another box, too.
+    /// Widens the box to contain another box.
     pub fn join(&mut self, other: &Self) {
         self.low = Vec2::new(self.low.x.min(other.low.x), self.low.y.min(other.low.y));
         self.high = Vec2::new(self.high.x.max(other.high.x), self.high.y.max(other.high.y));
@@ -64,15 +64,15 @@ impl Extent {
         0.5 * (self.high - self.low)
     }
 
-    /// Returns this box, but no farther from `start` than a few times its size: a body that flies away must not make
-    /// the others dots.
+    /// Returns this box, limited to a few times the size of `start` around it, so that a body that flies away does not
+    /// reduce the others to dots.
     #[must_use]
     pub fn near(&self, start: &Self) -> Self {
         if start.is_empty() || self.is_empty() {
             return *self;
         }
         let half = start.half();
-        let most = WIDEST * half.x.max(half.y);
+        let most = MAX_WIDENING * half.x.max(half.y);
         let (center, reach) = (start.center(), Vec2::new(most, most));
         if !(most > 0.0) {
             return *self;
@@ -90,12 +90,12 @@ impl Extent {
 pub struct View {
     size: Size,
     center: Vec2,
-    /// Pixels per length unit; positive and finite.
+    /// The number of pixels per length unit; positive and finite.
     scale: f64,
 }
 
 impl View {
-    /// Returns the view of a scene: its own viewport, or the box that holds its bodies, with a margin.
+    /// Returns the view of a scene: its own viewport, or the box of its bodies with a margin.
     #[must_use]
     pub fn for_scene(scene: &Scene, extent: &Extent, size: Size) -> Self {
         match scene.display.viewport {
@@ -109,13 +109,13 @@ impl View {
         }
     }
 
-    /// Creates the view that shows at least `half` to every side of `center`.
+    /// Creates the view that shows at least `half` on every side of `center`.
     fn new(center: Vec2, [x, y]: [f64; 2], size: Size) -> Self {
         let scale = (0.5 * f64::from(size.width()) / x).min(0.5 * f64::from(size.height()) / y);
-        // A single point, or nothing at all: one length unit to every side.
+        // For a single point, or no points, one length unit on every side.
         let fallback = 0.5 * f64::from(size.width().min(size.height()));
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { fallback };
-        let center = if center.x.abs() < FAR && center.y.abs() < FAR { center } else { Vec2::zeros() };
+        let center = if center.x.abs() < MAX_PLACE && center.y.abs() < MAX_PLACE { center } else { Vec2::zeros() };
         Self { size, center, scale }
     }
 

@@ -1,4 +1,4 @@
-//! The ways to run programs on this host, and the grader's side of a start.
+//! The ways to run programs on this host, and the grader's part of starting a run.
 
 use std::{
     ffi::OsString,
@@ -18,25 +18,26 @@ use super::{
     fake::FakeRun,
     fault::{SandboxError, from_setup_failure},
     job::{Job, Policy, ProgramIdentity},
+    job_files::{folder_fault, plain_name, write_files},
     keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
-    laid::{folder_fault, plain_name, write_files},
     layers::{self, Layer, LayerReport},
+    memory_budget,
     outcome::{RunEnd, StartProblem},
-    own, program, room,
-    running::{RunningProgram, SupervisedRun},
+    own_files, program,
+    running_program::{RunningProgram, SupervisedRun},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
     sys,
     wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
 };
 
-/// The program that is started as the supervisor: one whose `main` calls [`supervisor_main`](super::supervisor_main).
+/// The program that is started as the supervisor. Its `main` must call [`supervisor_main`](super::supervisor_main).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Supervisor {
     program: PathBuf,
 }
 
 impl Supervisor {
-    /// Returns this very program, even when its file has been replaced or removed since it was started.
+    /// Returns the current program, even if its file has been replaced or removed since it was started.
     #[must_use]
     pub fn this_program() -> Self {
         Self { program: "/proc/self/exe".into() }
@@ -48,22 +49,22 @@ impl Supervisor {
         Self { program: program.into() }
     }
 
-    /// Returns the grader's files that no submission may run: this process's and the supervisor's.
+    /// Returns the grader's files that no submission may run: those of this process and the supervisor.
     fn own_files(&self) -> [PathBuf; 2] {
         ["/proc/self/exe".into(), self.program.clone()]
     }
 
-    /// Returns the supervisor's command for this request, without our environment.
+    /// Returns the command that starts the supervisor in `mode`, without the grader's environment.
     fn command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
-        // Copies of programs are in this folder; the probe tries to execute there.
+        // Copies of programs are in this folder, so the probe tries to execute there.
         command.env("TMPDIR", std::env::temp_dir());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
 
-    /// Starts the supervisor of a run, with the descriptors that the run's walls need.
+    /// Starts the supervisor of a run, with the descriptors that the run's layers need.
     fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
         let begin = || -> io::Result<_> {
             let (mut child, control) = spawn_connected(self.command(MODE_RUN))?;
@@ -71,13 +72,13 @@ impl Supervisor {
             Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
         let asked = begin().map_err(|source| self.not_started(source))?;
-        // A supervisor that does not read reports why, or ends.
+        // A supervisor that does not read reports the reason, or ends.
         let _ = wire::send(&asked.control, order);
         Ok(asked)
     }
 
-    /// Sends a request to a keeper of runs of this kind, and starts a keeper if there is none; returns also whether it
-    /// existed before.
+    /// Sends a request to a keeper of runs of this kind, and starts a keeper if there is none. Also returns whether the
+    /// keeper existed before.
     fn ask_keeper(
         &self,
         order: &RunOrder,
@@ -108,7 +109,7 @@ impl Supervisor {
         SandboxError::Supervisor { program: self.program.display().to_string(), source }
     }
 
-    /// Tries every wall once.
+    /// Tests every layer once.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
         let child = self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?;
         let output = child.wait_with_output();
@@ -121,13 +122,13 @@ impl Supervisor {
     }
 }
 
-/// Starts a supervisor; the answer is also the other end of its standard input.
+/// Starts a supervisor. Also returns the other end of its standard input.
 fn spawn_connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
     let (ours, theirs) = UnixStream::pair()?;
     Ok((command.stdin(OwnedFd::from(theirs)).spawn()?, ours))
 }
 
-/// A supervisor that has its order.
+/// A started supervisor that has received its order.
 struct SpawnedSupervisor {
     host: Host,
     control: UnixStream,
@@ -135,7 +136,7 @@ struct SpawnedSupervisor {
 }
 
 impl SpawnedSupervisor {
-    /// Reads the supervisor's first word.
+    /// Reads the supervisor's first message.
     fn first(&mut self) -> io::Result<Event> {
         wire::receive(&mut self.answers)
     }
@@ -146,7 +147,7 @@ impl SpawnedSupervisor {
     }
 }
 
-/// A way to run programs. Cheap to clone; runs from several threads do not disturb each other.
+/// A way to run programs. Cloning is cheap, and runs from several threads are independent.
 #[derive(Clone)]
 pub struct Backend {
     kind: Kind,
@@ -176,23 +177,25 @@ impl std::fmt::Debug for Backend {
 }
 
 impl Backend {
-    /// Returns the launcher with every wall that holds on this host. Probes once.
+    /// Returns the backend with every layer that holds on this host. Probes once.
     ///
     /// # Errors
     ///
     /// [`SandboxError::Missing`] below the required set: no new privileges, limits, reaper, system call filter, and
-    /// file rules (or, for root, a user per program). Nothing is run then; see [`Backend::without_sandbox`].
+    /// file rules (or, for root, a user per program). In this case nothing can be run; see
+    /// [`Backend::without_sandbox`].
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::walls(&reports).map_err(lacking)?;
+        let walls = layers::walls(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
-    /// Returns the backend with the walls of other reports, and with the file rules of a kernel with this version.
+    /// Returns the backend with the layers of other reports, and with the file rules of a kernel with the given
+    /// Landlock version.
     fn with(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
-                let walls = layers::walls(&reports).map_err(lacking)?;
+                let walls = layers::walls(&reports).map_err(missing_layers)?;
                 Kind::launcher(supervisor.clone(), Walls { landlock_version, ..walls })
             }
             Kind::Fake(script) => Kind::Fake(script.clone()),
@@ -200,63 +203,63 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
-    /// Returns the backend without one of its walls, to prove what the others hold alone. Reports state it.
+    /// Returns the backend without one of its layers, to test the others alone. Reports name the missing layer.
     ///
     /// # Errors
     ///
-    /// [`SandboxError::Missing`] when the wall is required on this host.
+    /// [`SandboxError::Missing`] if the layer is required on this host.
     pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
         self.with(layers::without(&self.layers, layer), 0)
     }
 
-    /// Returns the backend with the file rules of an older kernel (Landlock's version, from 1 on), to prove that they
-    /// hold, too.
+    /// Returns the backend with the file rules of an older kernel (Landlock's version, from 1 on), to test that they
+    /// hold as well.
     ///
     /// # Errors
     ///
-    /// As for [`Backend::without`].
+    /// The errors of [`Backend::without`].
     pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
         self.with(layers::with_landlock(&self.layers, version), version)
     }
 
-    /// Returns every wall that holds on this host, however few: a missing wall is no error. For `--unsafe-no-sandbox`.
-    /// The layers name what is missing, see [`Backend::weaknesses`].
+    /// Returns the backend with every layer that holds on this host, however few; a missing layer is not an error. Used
+    /// by `--unsafe-no-sandbox`. [`Backend::weaknesses`] names the missing layers.
     ///
     /// # Errors
     ///
-    /// [`SandboxError::Missing`] when we are root and cannot become another user: a program is never run as root. Also
-    /// when the supervisor does not start.
+    /// [`SandboxError::Missing`] if the grader is root and cannot become another user, because a program is never run
+    /// as root. Also if the supervisor does not start.
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::whatever_holds(&reports).map_err(lacking)?;
+        let walls = layers::available_layers(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
-    /// Returns whether every wall holds that this host may not grade without.
+    /// Returns whether all layers required on this host hold.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.layers.iter().all(|report| report.active || !report.required)
     }
 
-    /// Returns one line per required wall that does not hold; none for a complete sandbox.
+    /// Returns one line per required layer that does not hold; empty for a complete sandbox.
     #[must_use]
     pub fn weaknesses(&self) -> Vec<String> {
         layers::missing(&self.layers)
     }
 
-    /// Returns a backend that runs nothing and answers as scripted, for tests of whatever uses the sandbox.
+    /// Returns a backend that runs nothing and returns scripted results, for tests of code that uses the sandbox.
     #[must_use]
     pub fn fake(script: impl Fn(&Job) -> FakeRun + Send + Sync + 'static) -> Self {
         Self { kind: Kind::Fake(Arc::new(script)), layers: layers::none() }
     }
 
-    /// Returns the walls, active or not.
+    /// Returns the layers, active or not.
     #[must_use]
     pub fn layers(&self) -> &[LayerReport] {
         &self.layers
     }
 
-    /// Returns why this file can't be started at all, judged by its beginning; `None` if it may be tried.
+    /// Returns the reason why a file cannot be started at all, judged by its beginning; `None` if a start may be tried.
     #[must_use]
     pub fn start_problem(&self, program: &Path) -> Option<StartProblem> {
         match &self.kind {
@@ -265,12 +268,12 @@ impl Backend {
         }
     }
 
-    /// Starts the program. It may have ended by the time that this returns; a program that cannot be started is an
+    /// Starts the program, which may have ended when this returns. If a program cannot be started, that is a
     /// [`RunOutcome`](super::RunOutcome) and not an error.
     ///
     /// # Errors
     ///
-    /// Faults of ours or of the host.
+    /// Errors of the grader or the host.
     pub fn start(&self, job: &Job) -> Result<RunningProgram, SandboxError> {
         let (supervisor, walls, keepers) = match &self.kind {
             Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),
@@ -301,14 +304,14 @@ impl Backend {
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match asked.first() {
-                // It had ended for want of orders before this one arrived.
+                // The keeper had ended because it received no order in time.
                 Err(_) if kept => asked.host.kill(),
                 first => break (asked, first),
             }
         };
         match first {
             Ok(Event::Ready { session, user }) => {
-                let folder = match order.volatile.then(|| handed_over(&asked.control)).transpose() {
+                let folder = match order.volatile.then(|| receive_folder(&asked.control)).transpose() {
                     Ok(folder) => folder.map(OpenFolder::from),
                     Err(_) => return Err(asked.loss_error()),
                 };
@@ -319,7 +322,7 @@ impl Backend {
             Ok(Event::Failed(failure)) => {
                 asked.host.rest(None);
                 match failure.errno {
-                    // The program itself is larger than its memory may be.
+                    // The program itself is larger than its memory limit.
                     libc::ENOMEM if failure.stage == wire::EXECUTE => {
                         FakeRun::with_end(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
                     }
@@ -334,13 +337,13 @@ impl Backend {
     }
 }
 
-/// Returns the error for walls that this host lacks.
-const fn lacking(missing: String) -> SandboxError {
+/// Returns the error for layers that this host lacks.
+const fn missing_layers(missing: String) -> SandboxError {
     SandboxError::Missing { missing }
 }
 
-/// Returns the working folder in memory.
-fn handed_over(control: &UnixStream) -> io::Result<OwnedFd> {
+/// Receives the working folder in memory.
+fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
     let mut byte = [0];
     let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
     match (byte[0], descriptors.into_iter().next()) {
@@ -349,7 +352,7 @@ fn handed_over(control: &UnixStream) -> io::Result<OwnedFd> {
     }
 }
 
-/// Returns the order for a job, with absolute paths, to a supervisor that is this program.
+/// Returns the order for a job, with absolute paths, to a supervisor of the current program.
 fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path) -> Result<RunOrder, SandboxError> {
     let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
         true => Ok(folder),
@@ -377,7 +380,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         readable,
         executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
         named: examined.named.iter().map(|path| wire::raw(path)).collect(),
-        own: own::known_files(supervisor).iter().map(|path| wire::raw(path)).collect(),
+        own: own_files::known_files(supervisor).iter().map(|path| wire::raw(path)).collect(),
         trace: trace.map(wire::raw),
         files: Vec::new(),
         volatile: false,
@@ -388,6 +391,6 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
         walls,
         limits: job.limits.clone(),
     };
-    order.volatile = job.in_memory && walls.namespaces && room::is_enough_for(order.folder_bytes());
+    order.volatile = job.in_memory && walls.namespaces && memory_budget::is_enough_for(order.folder_bytes());
     Ok(order)
 }

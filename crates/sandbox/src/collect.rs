@@ -1,9 +1,9 @@
-//! Takes a file out of a working folder after the program's end.
+//! Takes a file from a working folder after the program's end.
 //!
 //! A hostile program leaves a link to a reference, a pipe, a device or a terabyte of holes where its output should be.
-//! So the file is opened beneath the folder without following any link and without waiting, and judged by the open
-//! descriptor: a regular file, with one name, within the limit. Call this only when every process is dead, which is
-//! when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
+//! The file is therefore opened beneath the folder without following links and without waiting. The open descriptor
+//! must be a regular file, with one name, within the limit. Call this only after every process is dead, which is the
+//! case when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
 
 use std::{
     fs::File,
@@ -16,18 +16,18 @@ pub use fosssim_files::{FileError as CollectError, Folder as OpenFolder, FolderE
 
 use super::supervisor::open_up;
 
-/// Removes a folder with all that a program left in it: folders that are closed to their owner, and folders nested
-/// deeper than descriptors suffice. Only called while no process of the program is alive.
+/// Removes a folder with everything that a program left in it, including folders that are closed to their owner or
+/// nested too deeply for the available descriptors. Must be called only when no process of the program is alive.
 ///
 /// # Errors
 ///
-/// When something can't be removed. A folder that is not there is removed.
+/// If something cannot be removed. A missing folder is not an error.
 pub fn remove_folder(path: &Path) -> io::Result<()> {
     let gone = |error: io::Error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) };
     if std::fs::remove_dir_all(path).or_else(gone).is_ok() {
         return Ok(());
     }
-    // In a folder that others may write to, a link could be there by now.
+    // In a folder that others may write to, there could be a link by now.
     open_up(File::options().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NOFOLLOW).open(path)?.as_fd());
     std::fs::remove_dir_all(path).or_else(gone)
 }

@@ -1,18 +1,18 @@
-//! From the supervisor's facts to how a run ended.
+//! Decides from the supervisor's facts how a run ended.
 //!
 //! The kernel's facts decide first: the reason of the supervisor's kill, the wait status, the counters. The program's
-//! output only explains a failure: why it did not start, and whether it gave up for want of memory. Forging it gains
-//! nothing: it is one failure instead of another.
+//! output only explains a failure: why it did not start, or whether it ran out of memory. Forging the output gains
+//! nothing, because it only replaces one failure by another.
 
 use super::{
     outcome::{RunEnd, StartProblem},
     wire::{Report, RunOrder},
 };
 
-/// The exit code of the dynamic loader when it finds no library.
+/// The exit code of the dynamic loader if a library is missing.
 const LOADER_FAILED: i32 = 127;
 
-/// Returns how the run of `order` ended, given the facts and the program's standard error.
+/// Returns how the run of `order` ended, from the facts and the program's standard error.
 pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
     if report.exec_errno == Some(libc::ENOMEM) {
         return RunEnd::MemoryLimit;
@@ -33,7 +33,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
         Some(libc::SIGSYS) => return RunEnd::Violation { call: "a call of another architecture (32 bits)".into() },
         _ => {}
     }
-    // A short run can pass a limit and end between two checks.
+    // A short run can exceed a limit and end between two checks.
     if report.peak_memory > order.limits.memory {
         return RunEnd::MemoryLimit;
     }
@@ -66,7 +66,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
     RunEnd::Exited(code)
 }
 
-/// Returns the reason why the kernel does not execute a file that exists and may be executed.
+/// Returns the reason why the kernel does not execute an existing executable file.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {
         libc::ENOENT | libc::EACCES | libc::EPERM => StartProblem::MissingLoader {},
@@ -76,19 +76,19 @@ fn start_problem(errno: i32) -> StartProblem {
     }
 }
 
-/// Returns the library that the loader of glibc or musl reports as missing. The program itself could print the same,
-/// with no more than a name as the effect.
+/// Returns the library that the loader of glibc or musl reports as missing. The program itself could print the same
+/// text, which would only change a name in a message.
 fn missing_library(stderr: &str) -> Option<String> {
-    const LONGEST: usize = 100;
+    const MAX_NAME_BYTES: usize = 100;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
     let (_, after) = stderr
         .split_once("error while loading shared libraries: ")
         .or_else(|| stderr.split_once("Error loading shared library "))?;
     let name = after.split([':', '\n']).next()?.trim();
-    (name.len() <= LONGEST && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
+    (name.len() <= MAX_NAME_BYTES && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
 }
 
-/// Returns whether a sanitizer's runtime reports that its terabytes of address space were denied.
+/// Returns whether a sanitizer's runtime reports that it was denied its terabytes of address space.
 fn wants_shadow(stderr: &str) -> bool {
     const COMPLAINTS: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
@@ -98,10 +98,10 @@ fn wants_shadow(stderr: &str) -> bool {
     COMPLAINTS.iter().any(|complaint| stderr.contains(complaint))
 }
 
-/// Returns whether its last words are those of a runtime whose request for memory was denied. A single request beyond
-/// the limit of address space fails without any memory in use, so that no counter shows it.
+/// Returns whether the output ends with a runtime's message about a denied request for memory. A single request beyond
+/// the limit of address space fails without memory in use, so no counter shows it.
 fn wants_memory(stderr: &str) -> bool {
-    // C++, Rust, Python, Java, Node and the sanitizers.
+    // The messages of C++, Rust, Python, Java, Node and the sanitizers.
     const COMPLAINTS: [&str; 6] = [
         "what():  std::bad_alloc",
         "memory allocation of ",

@@ -1,14 +1,14 @@
-//! Which walls of the sandbox hold on this host.
+//! Tests the layers of the sandbox on this host.
 
 use super::{
     backend::Supervisor,
     layers::{Layer, LayerReport, reports},
 };
 
-/// Returns which walls hold on this host, tried once by starting this very program as a supervisor.
+/// Tests every layer once on this host and returns the results. Starts the current program as a supervisor.
 ///
-/// The program must call [`supervisor_main`](super::supervisor_main) first of all. When not even the supervisor
-/// starts, every wall is reported as missing with that reason.
+/// The program must call [`supervisor_main`](super::supervisor_main) first in its `main`. If the supervisor does not
+/// start, every layer is reported as missing for that reason.
 #[must_use]
 pub fn doctor() -> Vec<LayerReport> {
     match Supervisor::this_program().probe() {

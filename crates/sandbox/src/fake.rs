@@ -1,54 +1,54 @@
-//! Runs that never happened: scripted for tests, or decided before anything was started.
+//! Simulated runs, scripted for tests, and runs that are decided before anything is started.
 
 use std::{sync::Arc, time::Duration};
 
 use super::{
     fault::SandboxError,
     job::Job,
-    laid,
+    job_files,
     layers::LayerReport,
     outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem},
-    running::RunningProgram,
+    running_program::RunningProgram,
 };
 
-/// The answer of a fake run.
+/// The result of a fake run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FakeRun {
-    /// The way it ended.
+    /// The way the run ended.
     pub ended: RunEnd,
-    /// The trace that it leaves, if the job has one; empty for no trace.
+    /// The trace that the run leaves, if the job has one; empty for no trace.
     pub trace: Vec<u8>,
-    /// Standard output.
+    /// The standard output.
     pub stdout: Vec<u8>,
-    /// Standard error.
+    /// The standard error.
     pub stderr: Vec<u8>,
-    /// Processor time; the clock shows the same.
+    /// The processor time, which is also used as the time on the clock.
     pub cpu: Duration,
-    /// Peak memory in bytes.
+    /// The peak memory in bytes.
     pub peak_memory: u64,
 }
 
 impl FakeRun {
-    /// Returns a run that ended like this and wrote nothing.
+    /// Returns a run that ended with `ended` and wrote nothing.
     #[must_use]
     pub fn with_end(ended: RunEnd) -> Self {
         Self { ended, trace: Vec::new(), stdout: Vec::new(), stderr: Vec::new(), cpu: Duration::ZERO, peak_memory: 0 }
     }
 
-    /// Returns a run that exited with code 0 and wrote this trace.
+    /// Returns a run that exited with code 0 and wrote `trace`.
     #[must_use]
     pub fn wrote(trace: impl Into<Vec<u8>>) -> Self {
         Self { trace: trace.into(), ..Self::with_end(RunEnd::Exited(0)) }
     }
 
-    /// Returns a program that never ran.
+    /// Returns a run whose program could not be started.
     pub(super) fn could_not_start(problem: StartProblem) -> Self {
         Self::with_end(RunEnd::CouldNotStart(problem))
     }
 
     pub(super) fn into_running(self, job: &Job, layers: Arc<[LayerReport]>) -> Result<RunningProgram, SandboxError> {
         if let Some(name) = job.trace.as_ref().filter(|_| !self.trace.is_empty()) {
-            laid::write_file(job, name, &self.trace)?;
+            job_files::write_file(job, name, &self.trace)?;
         }
         let is_over = self.trace.len() as u64 > job.limits.trace_bytes && self.ended != RunEnd::Cancelled;
         let outcome = RunOutcome {

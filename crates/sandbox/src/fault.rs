@@ -1,4 +1,4 @@
-//! Faults that are never the program's doing.
+//! Errors that are never caused by the program.
 
 use std::{
     io::{self, Read},
@@ -7,63 +7,63 @@ use std::{
 
 use super::wire;
 
-/// Faults of ours or of the host; never the program's.
+/// Errors of the grader or the host, never of the program.
 #[derive(Debug, thiserror::Error)]
 pub enum SandboxError {
-    /// This host lacks a required wall.
+    /// The host lacks a required layer.
     #[error("this host cannot run programs safely:\n{missing}")]
     Missing {
-        /// One line per missing wall, with what to do.
+        /// One line per missing layer, with its remedy.
         missing: String,
     },
     /// The supervisor could not be started.
     #[error("cannot start the sandbox's supervisor {program}: {source}")]
     Supervisor {
-        /// The supervisor's program.
+        /// The file of the supervisor's program.
         program: String,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
     /// The supervisor ended without a report.
-    #[error("the sandbox's supervisor was lost ({how}); its processes were ended")]
+    #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were ended")]
     Lost {
-        /// A description of its end, if it is known.
+        /// A description of the supervisor's end, if known.
         how: String,
     },
     /// A step of the set-up failed.
     #[error("the sandbox could not {stage}: {source}")]
     SetUp {
-        /// The step.
+        /// The setup step that failed.
         stage: String,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
     /// The working folder cannot be used.
-    #[error("the working folder {folder}: {source}")]
+    #[error("cannot use the working folder {folder}: {source}")]
     Folder {
         /// The folder.
         folder: String,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
-    /// A path that the program should be able to read is not there.
-    #[error("{path}, which the program must read: {source}")]
+    /// A path that the program should be able to read does not exist.
+    #[error("cannot read {path}, which the program needs: {source}")]
     Readable {
         /// The path.
         path: String,
-        /// The system's reason.
+        /// The system's error.
         source: io::Error,
     },
     /// The program was changed after it was staged.
-    #[error("{program} was changed or removed by somebody else while it was graded")]
+    #[error("{program} was changed or removed during grading by another program")]
     Changed {
         /// The program.
         program: String,
     },
     /// Processes could not be ended.
-    #[error("{count} processes of the program could not be ended; look for processes in state D on this host")]
+    #[error("{count} processes of the program could not be ended; check this host for processes in state D")]
     Survivors {
-        /// How many.
+        /// The number of processes.
         count: u32,
     },
 }
@@ -77,13 +77,13 @@ pub(super) fn from_setup_failure(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// Returns the error for a supervisor that ended without a word. Its channel is closed by now, which ends one that is
-/// merely confused.
+/// Returns the error for a supervisor that ended without a report. Its channel must be closed, which ends a supervisor
+/// that only failed to answer.
 pub(super) fn loss_error(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();
     if let Some(stderr) = child.stderr.take() {
-        // Its last words are a help, not a need.
+        // The last lines of its output are helpful, but not required.
         let _ = stderr.take(2000).read_to_string(&mut text);
     }
     let text = text.trim();

@@ -1,6 +1,6 @@
-//! Jobs: a program to run, and its limits.
+//! Jobs, which are programs to run with their limits.
 //!
-//! A [`Job`] is a description; nothing here runs a process.
+//! A [`Job`] is only a description; this module runs no process.
 
 use std::{
     ffi::OsString,
@@ -11,37 +11,37 @@ use std::{
 
 use serde::{Deserialize, Serialize};
 
-/// The rights of a program, beyond computing and writing into its working folder.
+/// The rights of a program, in addition to computing and writing into its working folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Policy {
-    /// A student's program: threads, but no other process and no second program.
+    /// A student's program may start threads, but no other process and no second program.
     Submission,
-    /// Compilers and build tools: they may start processes and the system's programs, within the same limits.
+    /// Compilers and build tools may start processes and the system's programs, within the same limits.
     Tools,
 }
 
-/// The limits of one run. Every limit is always enforced; there is no "unlimited".
+/// The limits of one run. All limits are always enforced; none can be unlimited.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
-    /// Processor time of all the program's threads and processes together.
+    /// The processor time of all the program's threads and processes together.
     pub cpu: Duration,
-    /// Time on the clock, from the start to the end.
+    /// The time on the clock, from the start to the end.
     pub wall: Duration,
-    /// Resident memory in bytes, of all processes together. Files of the working folder are not part of it, even if the
-    /// folder is in memory, except while they are mapped. The stack of the main thread ends at 8 MiB in any case.
+    /// The resident memory of all processes together, in bytes. Files of the working folder do not count unless they
+    /// are mapped, even if the folder is in memory. The stack of the main thread is always limited to 8 MiB.
     pub memory: u64,
-    /// Bytes that are kept of standard output, and separately of standard error. The rest is read and dropped.
+    /// The number of bytes that are kept of standard output, and of standard error. The rest is read and dropped.
     pub output_bytes: u64,
-    /// Length of the trace ([`Job::trace`]).
+    /// The maximum length of the trace ([`Job::trace`]), in bytes.
     pub trace_bytes: u64,
-    /// Bytes on disk in the working folder (blocks in use, so that holes do not count), those at the start
-    /// included. A job with a trace may have [`Limits::trace_bytes`] besides.
+    /// The number of bytes on disk in the working folder (blocks in use, so holes do not count), including those at the
+    /// start. A job with a trace may use [`Limits::trace_bytes`] in addition.
     pub folder_bytes: u64,
-    /// Files and folders in the working folder, those at the start included.
+    /// The number of files and folders in the working folder, including those at the start.
     pub folder_files: u64,
-    /// Threads and processes at one time.
+    /// The number of threads and processes at one time.
     pub processes: u32,
-    /// Descriptors that one process may hold.
+    /// The number of descriptors that one process may hold.
     pub open_files: u32,
 }
 
@@ -62,12 +62,12 @@ impl Default for Limits {
     }
 }
 
-/// The identity of the file at a path, which shows that it was not written to since.
+/// The identity of the file at a path, which shows that the file has not been written to since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ProgramIdentity([i64; 5]);
 
 impl ProgramIdentity {
-    /// Returns the identity of the regular file at the path, links followed; `None` if there is none.
+    /// Returns the identity of the regular file at the path, following links; `None` if there is no such file.
     #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
@@ -96,9 +96,9 @@ pub struct Job {
 }
 
 impl Job {
-    /// Creates a job that runs `program` in the existing working folder `folder`, which the program may change at will.
+    /// Creates a job that runs `program` in the existing working folder `folder`, which the program may change freely.
     ///
-    /// Standard input is empty. A relative `program` is looked up from the grader's current folder, never on `PATH`.
+    /// Standard input is empty. A relative `program` is resolved from the grader's current folder, never from `PATH`.
     #[must_use]
     pub fn new(program: impl Into<PathBuf>, folder: impl Into<PathBuf>) -> Self {
         Self {
@@ -117,41 +117,41 @@ impl Job {
         }
     }
 
-    /// Returns the program's arguments, without its own name.
+    /// Sets the program's arguments, without its own name.
     #[must_use]
     pub fn arguments<A: Into<OsString>>(mut self, arguments: impl IntoIterator<Item = A>) -> Self {
         self.arguments = arguments.into_iter().map(Into::into).collect();
         self
     }
 
-    /// Sets files and folders outside the working folder that the program may read (not change, not execute).
+    /// Sets the files and folders outside the working folder that the program may read (not change or execute).
     ///
-    /// When the grader is root the program runs as another user, so that these paths must be readable by all users.
+    /// If the grader is root, the program runs as another user, so the paths must be readable by all users.
     #[must_use]
     pub fn readable<P: Into<PathBuf>>(mut self, paths: impl IntoIterator<Item = P>) -> Self {
         self.readable = paths.into_iter().map(Into::into).collect();
         self
     }
 
-    /// Sets that the program writes its trace into the file `name` of the working folder, which has a limit of its own.
-    /// [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens the trace.
+    /// Declares that the program writes its trace into the file `name` of the working folder, which has a separate
+    /// limit. [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens the trace.
     #[must_use]
     pub fn trace(mut self, name: impl Into<String>) -> Self {
         self.trace = Some(name.into());
         self
     }
 
-    /// Lets the program work in a copy of the working folder in memory, if there are namespaces and the machine has
-    /// room: the kernel then limits its bytes and files. The folder itself stays as it is; what the program left is in
-    /// the [`LeftFolder`](crate::LeftFolder).
+    /// Lets the program work in a copy of the working folder in memory, if there are namespaces and enough memory. The
+    /// kernel then limits the copy's bytes and files. The folder itself does not change; the program's files are in the
+    /// [`LeftFolder`](crate::LeftFolder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.in_memory = true;
         self
     }
 
-    /// Puts a file with this name and content into the working folder before the program starts. If that folder is in
-    /// memory, the file is only there.
+    /// Adds a file that is written into the working folder before the program starts. If the program works in a copy in
+    /// memory, the file is only in the copy.
     #[must_use]
     pub fn file(mut self, name: impl Into<String>, content: impl Into<Vec<u8>>) -> Self {
         self.files.push((name.into(), content.into()));
@@ -165,8 +165,8 @@ impl Job {
         self
     }
 
-    /// Sets environment variables, on top of the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`).
-    /// The grader's own environment never reaches the program.
+    /// Sets environment variables, in addition to the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`).
+    /// The grader's own environment is never passed to the program.
     #[must_use]
     pub fn environment<N: Into<OsString>, V: Into<OsString>>(
         mut self,
@@ -176,24 +176,23 @@ impl Job {
         self
     }
 
-    /// Returns whether a program that was built with an address, thread or memory sanitizer may run. Sanitizers reserve
-    /// terabytes of address space, so that for such a program memory is limited only by checks of the memory in use, a
-    /// moment later.
+    /// Sets whether a program built with an address, thread or memory sanitizer may run. Sanitizers reserve terabytes
+    /// of address space, so the memory of such a program is limited only by delayed checks of the memory in use.
     #[must_use]
     pub fn sanitizers(mut self, allowed: bool) -> Self {
         self.sanitizers = allowed;
         self
     }
 
-    /// Declares that the program is a copy of ours, with this identity: if it is missing or another file at the start,
-    /// that is our fault and not the program's.
+    /// Declares that the program is the grader's copy, with this identity. If the file is missing or different at the
+    /// start, that is an error of the grader and not of the program.
     #[must_use]
     pub fn with_identity(mut self, identity: Option<ProgramIdentity>) -> Self {
         self.staged = identity;
         self
     }
 
-    /// Returns the limits.
+    /// Sets the limits.
     #[must_use]
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;

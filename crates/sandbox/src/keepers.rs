@@ -1,7 +1,7 @@
-//! Supervisors that serve several runs of one submission, as the grader sees them.
+//! The grader's side of supervisors that serve several runs of one submission.
 //!
-//! A grading of a right program on 116 scenes takes 1.2 s of processor time with them, and 2.0 s with a supervisor of
-//! its own for each run.
+//! With them, grading a right program on 116 scenes takes 1.2 s of processor time, compared with 2.0 s with one
+//! supervisor per run.
 
 use std::{
     fs::File,
@@ -23,8 +23,8 @@ use super::{
     wire::{self, Report, RunOrder},
 };
 
-/// The properties that all runs of one keeper share: all of the order but arguments, environment and working folder
-/// with its contents; and the very files that it names.
+/// The properties that all runs of one keeper share: the whole order except arguments, environment and the working
+/// folder with its contents, and the identities of the files that the order names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
@@ -33,13 +33,13 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Returns whether there can be a keeper for this order. Otherwise its supervisor serves no other run: without
-    /// namespaces, which end with the run, or with processes that are not counted.
+    /// Returns whether a keeper may serve the order. It may not if the run has no namespaces, which end with the run,
+    /// or if processes are not counted.
     pub(super) fn exists_for(order: &RunOrder) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
 
-    /// Returns the kind of this order; `None` when there can be no keeper for it.
+    /// Returns the kind of an order; `None` if no keeper may serve it.
     pub(super) fn from_order(order: &RunOrder) -> Option<Self> {
         if !Self::exists_for(order) {
             return None;
@@ -58,7 +58,7 @@ impl Kind {
     }
 }
 
-/// A keeper. Dropped, it ends, and the drop waits until it has.
+/// A keeper process. Dropping it ends the process and waits for the end.
 #[derive(Debug)]
 pub(super) struct Keeper {
     kind: Kind,
@@ -71,8 +71,8 @@ impl Keeper {
         Self { kind, child: Some(child), socket }
     }
 
-    /// Requests the run of an order, whose files have these contents; returns the connection to the run's supervisor,
-    /// and the file that the supervisor's answers come by.
+    /// Requests the run of an order, whose files have the contents `files`. Returns the connection to the run's
+    /// supervisor, and the file from which the supervisor's answers are read.
     pub(super) fn ask(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
@@ -85,7 +85,7 @@ impl Keeper {
     }
 
     fn dismiss(&self) {
-        // A keeper that has ended receives nothing.
+        // The shutdown fails if the keeper has ended, which does not matter.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
 }
@@ -94,20 +94,20 @@ impl Drop for Keeper {
     fn drop(&mut self) {
         self.dismiss();
         if let Some(child) = &mut self.child {
-            // The way in which it ends no longer matters.
+            // Its exit status no longer matters.
             let _ = child.wait();
         }
     }
 }
 
-/// The keepers of a backend that have no run now. There are never more keepers than there were runs at one time.
+/// The idle keepers of a backend. There are never more keepers than there were runs at one time.
 #[derive(Debug, Default)]
 pub(super) struct KeeperPool {
     idle: Mutex<Vec<Keeper>>,
 }
 
 impl KeeperPool {
-    /// Takes a keeper for runs of this kind. If there is none, a keeper of another kind makes room for it.
+    /// Takes a keeper for runs of this kind. If there is none, a keeper of another kind is removed to make room.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
@@ -128,14 +128,14 @@ impl KeeperPool {
 /// The supervisor of a run.
 #[derive(Debug)]
 pub(super) enum Host {
-    /// A process of its own.
+    /// A separate process.
     Own(Child),
-    /// A keeper, and the place to which it returns.
+    /// A keeper, and the pool to which it returns.
     Kept(Box<Keeper>, Arc<KeeperPool>),
 }
 
 impl Host {
-    /// Returns the error for a supervisor that ended without a word. Its channel must be closed.
+    /// Returns the error for a supervisor that ended without a report. Its channel must be closed.
     pub(super) fn loss_error(self) -> SandboxError {
         match self {
             Self::Own(child) => loss_error(child),
@@ -146,21 +146,21 @@ impl Host {
         }
     }
 
-    /// Ends the keeper, whatever it does.
+    /// Kills the keeper, whatever its state.
     pub(super) fn kill(&mut self) {
         let child = match self {
             Self::Own(child) => Some(child),
             Self::Kept(keeper, _) => keeper.child.as_mut(),
         };
-        // A keeper that has ended needs no end.
+        // Killing fails if the keeper has ended, which does not matter.
         let _ = child.map(Child::kill);
     }
 
-    /// Keeps the keeper for another run, if its run ended by itself according to the report.
+    /// Keeps the keeper for another run, if its run ended normally according to the report.
     pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {
-                // It ends by itself after its report; how, no longer matters.
+                // It ends by itself after its report; its exit status no longer matters.
                 let _ = child.wait();
                 None
             }
@@ -172,8 +172,8 @@ impl Host {
     }
 }
 
-/// A keeper between two runs. Dropped, it serves others: by then the folder of its last run must be removed, because
-/// the folder's pages count for the keeper's group.
+/// A keeper between two runs. Dropping it makes it available to others. Before that, the folder of its last run must be
+/// removed, because the folder's pages count for the keeper's group.
 #[derive(Debug)]
 pub(super) struct RestingKeeper {
     keeper: Option<Box<Keeper>>,

@@ -1,15 +1,16 @@
-//! The walls of the sandbox, and which of them hold on this host.
+//! The layers of the sandbox, and which of them hold on this host.
 //!
-//! Pure data: `doctor` and reports print it. A wall counts as active only when a probe process has put it up here.
+//! The module contains only data, which `doctor` and reports print. A layer counts as active only if a probe process
+//! has set it up on this host.
 
 use std::sync::Arc;
 
 use super::wire::{Probe, Walls};
 
-/// A row has a wall and its name in reports.
+/// Each row has a layer and its name in reports.
 macro_rules! layers {
     ($($(#[$about:meta])+ $layer:ident $name:literal;)+) => {
-        /// One wall.
+        /// A layer of the sandbox.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
         pub enum Layer { $($(#[$about])+ $layer,)+ }
 
@@ -29,43 +30,43 @@ macro_rules! layers {
 layers! {
     /// Executing a program never gains privileges.
     NoNewPrivileges "no new privileges";
-    /// Resource limits, clocks and counters.
+    /// Resource limits, clocks and counters limit a program.
     Limits "resource limits";
-    /// The supervisor adopts orphans, so that no process outlives a run.
+    /// The supervisor adopts orphans, so no process outlives a run.
     Reaper "reaper of orphans";
-    /// Copies of programs can be executed: not a wall, but nothing can be graded without.
+    /// Copies of programs can be executed. This is not a protection, but grading is impossible without it.
     Execution "executable copies";
-    /// The list of allowed system calls (seccomp).
+    /// Only listed system calls are allowed (seccomp).
     CallFilter "system call filter";
     /// Forbidden calls are named in the outcome.
     NamedCalls "named violations";
-    /// Landlock's rules for files.
+    /// Landlock's rules restrict files.
     FileRules "file rules (Landlock)";
-    /// Landlock's rules for signals and abstract sockets.
+    /// Landlock's rules restrict signals and abstract sockets.
     Scopes "signal scope (Landlock)";
-    /// Another user for every running program; this needs root.
+    /// Every running program has its own user, which requires root.
     OwnUser "a user per program";
-    /// Namespaces: a world without other processes, without network, and with few files.
+    /// Namespaces hide other processes, the network, and most files.
     Namespaces "namespaces";
-    /// A control group per run: the kernel's own counts, and an end for all at one word.
+    /// Each run has a control group, with the kernel's own counts and a command that ends all processes.
     ControlGroup "control group";
 }
 
-/// The first version of Landlock that confines signals.
-const SCOPES_SINCE: u8 = 6;
+/// The first version of Landlock that restricts signals.
+const SIGNAL_SCOPE_ABI: u8 = 6;
 
-/// Whether one wall holds on this host.
+/// The state of one layer on this host.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LayerReport {
-    /// Which wall.
+    /// The layer.
     pub layer: Layer,
-    /// Whether it holds.
+    /// Whether the layer holds.
     pub active: bool,
-    /// Whether this host may not grade without it.
+    /// Whether this host may not grade without the layer.
     pub required: bool,
-    /// The property that holds, or the reason why it does not.
+    /// The effect of the layer, or the reason why it does not hold.
     pub detail: String,
-    /// The thing to install or enable, when the layer does not hold and something can be done.
+    /// The component to install or enable, if the layer does not hold and there is a remedy.
     pub remedy: Option<&'static str>,
 }
 
@@ -77,7 +78,7 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     reports
 }
 
-/// Returns the report on a wall: its effect if it has no problem, and the remedy if it has one.
+/// Returns the report on a layer: its effect if it has no problem, otherwise the problem and its remedy.
 fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
     LayerReport {
         layer,
@@ -88,12 +89,12 @@ fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, rem
     }
 }
 
-/// Returns whether every running program has a user of its own.
+/// Returns whether every running program has its own user.
 fn has_own_user(probe: &Probe) -> bool {
     probe.root && probe.own_user.is_none()
 }
 
-/// Returns the walls that a process sets up around itself, and their needs.
+/// Returns the layers that a process sets up around itself, and the execution of copies.
 fn process_layers(probe: &Probe) -> [LayerReport; 4] {
     [
         report(
@@ -121,23 +122,23 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
             Layer::Execution,
             probe.execution.clone(),
             if probe.from_memory {
-                "in memory, because the temporary folder is mounted noexec; build steps can't run what they built there"
+                "programs run from memory, because the temporary folder is mounted noexec; build steps cannot run programs built there"
             } else {
                 "programs run from copies in the temporary folder"
             },
             true,
-            "name a temporary folder by TMPDIR in which programs may be executed",
+            "set TMPDIR to a folder in which programs may be executed",
         ),
     ]
 }
 
-/// Returns the walls before system calls, files and signals.
+/// Returns the layers that restrict system calls, files and signals.
 fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
     let (user, hidden) = (has_own_user(probe), probe.namespaces.is_none());
     let scopes = match (&probe.landlock, probe.landlock_abi) {
         (None, 6..) => None,
-        (None, abi) => Some(format!("Landlock here is version {abi}; signals are confined from version 6 on")),
-        (Some(_), _) => Some("there is no Landlock".into()),
+        (None, abi) => Some(format!("this host has Landlock version {abi}; signals are restricted from version 6 on")),
+        (Some(_), _) => Some("this host has no Landlock".into()),
     };
     [
         report(
@@ -182,7 +183,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
     ]
 }
 
-/// Returns the walls that only some hosts have: users, namespaces, groups.
+/// Returns the layers that only some hosts have: users, namespaces and groups.
 fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
     let own_user = match (probe.root, probe.roots_group) {
         (true, _) => probe.own_user.clone(),
@@ -226,7 +227,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
     ]
 }
 
-/// Returns the reports with one wall taken away, and with it the walls that depend on it.
+/// Returns the reports as if `layer`, and the layers that depend on it, were missing.
 pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
     let mut reports = reports.to_vec();
     for report in &mut reports {
@@ -236,7 +237,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
             report.remedy = None;
         }
     }
-    // Root may do without file rules where nothing of the host is in sight.
+    // Root may grade without file rules if the host's files are hidden.
     if [Layer::FileRules, Layer::Namespaces].contains(&layer) {
         let hidden = is_active(&reports, Layer::OwnUser) && is_active(&reports, Layer::Namespaces);
         for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules) {
@@ -248,29 +249,29 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
 
 /// Returns the reports with the file rules of an older kernel.
 pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerReport> {
-    let mut reports = if version < SCOPES_SINCE { without(reports, Layer::Scopes) } else { reports.to_vec() };
+    let mut reports = if version < SIGNAL_SCOPE_ABI { without(reports, Layer::Scopes) } else { reports.to_vec() };
     for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
         report.detail = format!("version {version} on request");
     }
     reports
 }
 
-/// Returns the walls that the supervisor puts up, given the reports; without the required set, the missing walls.
+/// Returns the layers that the supervisor sets up, from the reports. The error names missing required layers.
 pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
     let missing = missing(reports);
     if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
 }
 
-/// Returns the walls that hold, without regard to the required set. Only root must not run programs as itself: the
-/// error names the missing walls.
-pub(super) fn whatever_holds(reports: &[LayerReport]) -> Result<Walls, String> {
+/// Returns the layers that hold, whether or not the required set is complete. The error names missing layers if root
+/// would have to run programs as itself.
+pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
         Some(report) => Err(line(report)),
         None => Ok(active(reports)),
     }
 }
 
-/// Returns one line per required wall that does not hold.
+/// Returns one line per required layer that does not hold.
 pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
     reports.iter().filter(|report| report.required && !report.active).map(line).collect()
 }
@@ -280,7 +281,7 @@ fn line(report: &LayerReport) -> String {
     format!("{}: {}{remedy}", report.layer.name(), report.detail)
 }
 
-/// Returns whether a wall holds.
+/// Returns whether a layer holds.
 pub(super) fn is_active(reports: &[LayerReport], layer: Layer) -> bool {
     reports.iter().any(|report| report.layer == layer && report.active)
 }
@@ -300,7 +301,7 @@ fn active(reports: &[LayerReport]) -> Walls {
     }
 }
 
-/// Returns the layers in a report on a run that never happened.
+/// Returns the layers for the outcome of a run that was never started.
 pub(super) fn none() -> Arc<[LayerReport]> {
     let off = |layer| LayerReport {
         layer,
@@ -343,14 +344,14 @@ mod tests {
 
     #[test]
     fn without_landlock_only_root_with_namespaces_may_grade() {
-        let lacking = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
-        assert!(!walls(&reports(&lacking(true))).unwrap().landlock);
-        let bare = Probe { namespaces: Some("not permitted".into()), ..lacking(true) };
+        let missing_layers = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
+        assert!(!walls(&reports(&missing_layers(true))).unwrap().landlock);
+        let bare = Probe { namespaces: Some("not permitted".into()), ..missing_layers(true) };
         let missing = walls(&reports(&bare)).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("this grader included"), "{missing}");
         let bare = without(&without(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
         assert!(walls(&bare).is_err());
-        let missing = walls(&reports(&lacking(false))).unwrap_err();
+        let missing = walls(&reports(&missing_layers(false))).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("5.13"), "{missing}");
     }
 
@@ -362,20 +363,20 @@ mod tests {
 
     #[test]
     fn without_the_required_set_whatever_holds_stays_up() {
-        let lacking = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
-        let walls = whatever_holds(&reports(&lacking)).unwrap();
+        let missing_layers = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
+        let walls = available_layers(&reports(&missing_layers)).unwrap();
         assert!(!walls.landlock && walls.seccomp && walls.notify);
-        assert_eq!(missing(&reports(&lacking)).len(), 1);
-        assert_eq!(whatever_holds(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
+        assert_eq!(missing(&reports(&missing_layers)).len(), 1);
+        assert_eq!(available_layers(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
         let filterless = Probe { seccomp: Some("none".into()), ..healthy(true) };
-        let walls = whatever_holds(&reports(&filterless)).unwrap();
+        let walls = available_layers(&reports(&filterless)).unwrap();
         assert!(walls.own_user && walls.landlock && !walls.seccomp && !walls.notify);
     }
 
     #[test]
     fn root_never_runs_programs_as_itself() {
         let bound = Probe { own_user: Some("not permitted".into()), ..healthy(true) };
-        assert!(whatever_holds(&reports(&bound)).unwrap_err().contains("a user per program"));
+        assert!(available_layers(&reports(&bound)).unwrap_err().contains("a user per program"));
     }
 
     #[test]

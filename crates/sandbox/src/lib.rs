@@ -1,23 +1,23 @@
 //! Runs one program under limits and reports how it ended.
 //!
-//! The room knows nothing of scenes, traces or verdicts: bytes go in and out, and a [`RunOutcome`] holds what the
-//! kernel saw. [`Job`] is what to run, [`Backend`] is how, [`RunningProgram`] is a program at work.
+//! This crate does not use scenes, traces or verdicts: its inputs and outputs are bytes, and a [`RunOutcome`] holds the
+//! kernel's facts. A [`Job`] describes a run, a [`Backend`] starts it, and a [`RunningProgram`] is a started program.
 //!
-//! How it works: the grader starts its own binary again with a hidden first argument ([`supervisor_main`]). That
-//! fresh, single-threaded process is the *supervisor*: it makes itself the reaper of everything below it, forks, shuts
-//! the child in (own session, other user when it is root, resource limits, no new privileges, Landlock, seccomp) and
-//! executes the program. It watches clocks, memory, output and the working folder, kills the whole tree, and reports
-//! only when every process is dead. The child dies with the supervisor, and the supervisor's tree dies with the
-//! grader, whatever kills them.
+//! The grader starts its own binary again with a hidden first argument ([`supervisor_main`]). The new, single-threaded
+//! process is the *supervisor*. It becomes the reaper of all its descendants, forks, restricts the child (new session,
+//! other user when it is root, resource limits, no new privileges, Landlock, seccomp) and executes the program. It
+//! watches clocks, memory, output and the working folder, kills the whole process tree, and reports only when every
+//! process is dead. The child dies with the supervisor, and the supervisor's tree dies with the grader, whatever the
+//! cause.
 //!
-//! Where the kernel lets it, the supervisor first moves into namespaces of its own, in which only the run's processes
-//! and files exist and no network; when a process dies there, all processes below it die, too. This is a further wall,
-//! never the only one: everything else holds without it. There, runs of one submission share a *keeper*, which is
-//! prepared once and forks a supervisor for each run into fresh namespaces. A keeper whose run was stopped, crashed or
-//! left anything serves no other run.
+//! If the kernel allows it, the supervisor first moves into new namespaces that contain only the run's processes and
+//! files and no network. If a process in them dies, all its descendants die as well. Namespaces are an additional
+//! layer; everything else holds without them. With namespaces, the runs of one submission share a *keeper*, which is
+//! prepared once and forks a supervisor into new namespaces for each run. After a run that was stopped, crashed or left
+//! something behind, its keeper serves no other run.
 //!
 //! The sandbox never trusts a path that the program could change, never reads a result while the program lives, and
-//! never continues silently when a required layer is missing ([`Backend::best`] fails).
+//! never continues silently if a required layer is missing ([`Backend::best`] fails).
 //!
 //! ```no_run
 //! use fosssim_sandbox::{Backend, Job, Supervisor};
@@ -34,16 +34,16 @@ mod doctor;
 mod fake;
 mod fault;
 mod job;
+mod job_files;
 mod keepers;
-mod laid;
 mod layers;
 mod machine;
+mod memory_budget;
 mod mounts;
 mod outcome;
-mod own;
+mod own_files;
 mod program;
-mod room;
-mod running;
+mod running_program;
 pub mod selftest;
 mod supervisor;
 mod sys;
@@ -56,20 +56,20 @@ pub use fault::SandboxError;
 pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
 pub use outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem};
-pub use own::is_own;
-pub use running::{Canceller, LeftFolder, RunningProgram};
+pub use own_files::is_own;
+pub use running_program::{Canceller, LeftFolder, RunningProgram};
 pub use supervisor::supervisor_main;
 #[doc(hidden)]
 pub use wire::read_messages;
 
-/// The owner of the requested processor time.
+/// The processes whose processor time is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeOf {
     /// This thread.
     Thread,
     /// This process.
     Process,
-    /// The processes of all runs that have ended, and their supervisors.
+    /// The processes of all finished runs, and their supervisors.
     Children,
 }
 
@@ -83,8 +83,8 @@ pub fn processor_time(of: TimeOf) -> std::time::Duration {
     }
 }
 
-/// Lets this process's own writes beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
-/// instead of ending it. The programs that it runs keep the signal, which then ends them.
+/// Lets writes of this process beyond its limit of file sizes (`ulimit -f`) fail with an error, as on a full disk,
+/// instead of ending the process. The programs that it runs keep the signal, which ends them.
 pub fn let_large_writes_fail() {
     sys::ignore_file_size_signal();
 }

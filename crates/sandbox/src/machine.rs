@@ -1,8 +1,8 @@
-//! The machine's memory and its use, as the kernel reports them.
+//! The machine's memory and its use, as reported by the kernel.
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
-/// Returns the kernel's answer to `sysinfo`.
+/// Returns the result of `sysinfo`.
 fn read_sysinfo() -> libc::sysinfo {
     // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it.
     unsafe {
@@ -12,13 +12,13 @@ fn read_sysinfo() -> libc::sysinfo {
     }
 }
 
-/// Returns the bytes in a line of the kernel's report after this word, in kB.
+/// Returns the number of bytes in the line of the kernel's report that begins with `word`, which is in kB there.
 pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(word)?.strip_suffix(" kB"))?;
     line.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// Returns whether memory may be moved to a disk, where it counts as resident for no process.
+/// Returns whether memory may be swapped to disk, where it is resident for no process.
 pub(super) fn has_swap() -> bool {
     read_sysinfo().totalswap > 0
 }

@@ -1,7 +1,7 @@
-//! The system calls that make namespaces and mounts, each behind a safe function.
+//! The system calls that create namespaces and mounts, each wrapped in a safe function.
 //!
-//! Like `sys.rs`, and with the same promise: every function passes the kernel valid pointers to live values, turns its
-//! answer into a `Result`, and keeps no pointer. Only the supervisor's own fresh process calls these.
+//! As in `sys.rs`, every function passes the kernel valid pointers to live values, converts its result into a `Result`,
+//! and keeps no pointer. Only the new process of the supervisor calls them.
 
 #![expect(unsafe_code, reason = "namespaces and mounts have no safe wrapper among the dependencies")]
 
@@ -21,11 +21,11 @@ use rustix::{
 
 use crate::sys::{Fork, SingleThread, check, check_answer};
 
-/// Files there can be read and not changed.
+/// Files in the mount can be read but not changed.
 pub(super) const READ_ONLY: u64 = 0x1;
-/// Set-user bits are without effect.
+/// Set-user bits have no effect (`nosuid`).
 pub(super) const NO_SET_USER: u64 = 0x2;
-/// Device files are without effect.
+/// Device files have no effect (`nodev`).
 pub(super) const NO_DEVICES: u64 = 0x4;
 
 const AT_RECURSIVE: u32 = 0x8000;
@@ -39,14 +39,14 @@ struct MountAttributes {
     user_namespace: u64,
 }
 
-/// Leaves namespaces for new ones (`CLONE_NEW*`).
+/// Moves this process into new namespaces (`CLONE_NEW*`).
 pub(super) fn unshare(flags: i32) -> io::Result<()> {
     // SAFETY: an integer; nothing of ours depends on the namespaces that are left.
     check_answer(unsafe { libc::unshare(flags) })
 }
 
-/// Forks into new namespaces (`CLONE_NEW*`). The child is in them immediately, and is the first process of a namespace
-/// of processes.
+/// Forks into new namespaces (`CLONE_NEW*`). The child is immediately in them, and is the first process of a new
+/// process namespace.
 pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
     let flags = namespaces | libc::SIGCHLD;
     // SAFETY: without a stack of its own the child continues with a copy of ours, as after `fork`; the process has one
@@ -57,30 +57,31 @@ pub(super) fn fork_into(_: &SingleThread, namespaces: i32) -> io::Result<Fork> {
     }
 }
 
-/// Hides mounts of this namespace everywhere else.
-pub(super) fn keep_to_ourselves() -> io::Result<()> {
+/// Stops mounts of this namespace from appearing elsewhere.
+pub(super) fn make_mounts_private() -> io::Result<()> {
     Ok(mount_change(c"/", MountPropagationFlags::PRIVATE | MountPropagationFlags::REC)?)
 }
 
-/// Mounts a fresh file system of this kind. Set-user bits and devices have no effect in it; its files may be executed
-/// only on request.
+/// Mounts a new file system of type `kind`. Set-user bits and devices have no effect in it; its files are executable
+/// only if `executable`.
 pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr, executable: bool) -> io::Result<()> {
     let limits = if executable { MountFlags::empty() } else { MountFlags::NOEXEC };
     Ok(rustix::mount::mount(kind, target, kind, MountFlags::NOSUID | MountFlags::NODEV | limits, options)?)
 }
 
-/// Returns a copy of the mounts at and beneath the path, which is not attached yet. A link at its end is not followed.
+/// Returns a copy of the mounts at and below `path` that is not attached yet. A link at the end of `path` is not
+/// followed.
 pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
     let kind = OpenTreeFlags::OPEN_TREE_CLONE | OpenTreeFlags::OPEN_TREE_CLOEXEC;
     Ok(open_tree(CWD, path, kind | OpenTreeFlags::AT_RECURSIVE | OpenTreeFlags::AT_SYMLINK_NOFOLLOW)?)
 }
 
-/// Restricts every mount of the copy.
+/// Restricts every mount of a copy.
 pub(super) fn restrict(tree: BorrowedFd<'_>, attributes: u64) -> io::Result<()> {
     set_attributes(tree.as_raw_fd(), c"", AT_RECURSIVE | libc::AT_EMPTY_PATH.cast_unsigned(), attributes)
 }
 
-/// Restricts the one mount at the path.
+/// Restricts only the mount at `path`.
 pub(super) fn restrict_at(path: &CStr, attributes: u64) -> io::Result<()> {
     set_attributes(libc::AT_FDCWD, path, 0, attributes)
 }
@@ -94,18 +95,18 @@ fn set_attributes(start: RawFd, path: &CStr, flags: u32, attributes: u64) -> io:
     check(answer).map(drop)
 }
 
-/// Lays the copy over the path.
+/// Attaches a copy at `target`.
 pub(super) fn attach(tree: BorrowedFd<'_>, target: &CStr) -> io::Result<()> {
     Ok(move_mount(tree, c"", CWD, target, MoveMountFlags::MOVE_MOUNT_F_EMPTY_PATH)?)
 }
 
-/// Makes the mount at `root` the root folder, and the old root a folder beneath it.
+/// Makes the mount at `root` the root folder, and the old root a folder below it.
 pub(super) fn change_root(root: &CStr, old: &CStr) -> io::Result<()> {
     rustix::process::pivot_root(root, old)?;
     std::env::set_current_dir("/")
 }
 
-/// Returns whether the open file is where nothing may be executed (a mount with `noexec`).
+/// Returns whether the open file is in a mount that forbids execution (`noexec`).
 pub(super) fn forbids_execution(fd: BorrowedFd<'_>) -> bool {
     rustix::fs::fstatvfs(fd).is_ok_and(|about| about.f_flag.contains(StatVfsMountFlags::NOEXEC))
 }
@@ -117,7 +118,7 @@ pub(super) fn file_system_usage(fd: BorrowedFd<'_>) -> io::Result<(u64, u64)> {
     Ok((bytes, about.f_files.saturating_sub(about.f_ffree)))
 }
 
-/// Takes the mounts at and beneath the path away.
+/// Unmounts everything at and below `path`.
 pub(super) fn detach(path: &CStr) -> io::Result<()> {
     Ok(unmount(path, UnmountFlags::DETACH)?)
 }

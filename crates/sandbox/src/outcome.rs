@@ -1,4 +1,4 @@
-//! The way a run ended, as the kernel saw it.
+//! The way a run ended, according to the kernel.
 
 use std::{sync::Arc, time::Duration};
 
@@ -9,28 +9,28 @@ use super::layers::LayerReport;
 /// The output of a program to one stream.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CapturedOutput {
-    /// The first bytes, up to the limit. They are the program's words: escape them before they are shown.
+    /// The first bytes, up to the limit. They come from the program and must be escaped before they are displayed.
     pub bytes: Vec<u8>,
-    /// Whether there was more.
+    /// Whether the output was longer than the limit.
     pub truncated: bool,
 }
 
 /// The outcome of one run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunOutcome {
-    /// The way it ended.
+    /// The way the run ended.
     pub ended: RunEnd,
-    /// Processor time, user and system, of the whole tree.
+    /// The processor time of the whole process tree, user and system.
     pub cpu: Duration,
-    /// Time on the clock.
+    /// The time on the clock.
     pub wall: Duration,
-    /// Peak of the resident memory in bytes.
+    /// The peak of the resident memory in bytes.
     pub peak_memory: u64,
-    /// Standard output.
+    /// The standard output.
     pub stdout: CapturedOutput,
-    /// Standard error.
+    /// The standard error.
     pub stderr: CapturedOutput,
-    /// The layers that were active; a report states those that were not.
+    /// The state of all layers during the run.
     pub layers: Arc<[LayerReport]>,
 }
 
@@ -42,7 +42,7 @@ mod tests {
     fn an_ending_reads_as_a_sentence_about_the_program() {
         assert_eq!(
             RunEnd::Signalled(libc::SIGSEGV).to_string(),
-            "ended by signal 11 (SIGSEGV: it used memory that is not its own)"
+            "ended by signal 11 (SIGSEGV: it accessed memory that does not belong to it)"
         );
         assert_eq!(RunEnd::TraceLimit.to_string(), "wrote more than allowed to the trace");
         assert_eq!(

@@ -1,8 +1,8 @@
-//! The kind of a program, found by its first bytes before anything is executed.
+//! Finds the kind of a program from its first bytes, before anything is executed.
 //!
-//! No header of a submitted file is followed: the first bytes show the machine for which it was made, and the kernel
-//! and the loader find the rest, inside the limits. Only the first line of a script is read, because the system's
-//! interpreter is executed in the script's place.
+//! The headers of a submitted file are not followed. The first bytes show the machine for which it was built; the
+//! kernel and the loader read the rest, inside the limits. Only the first line of a script is read, because the
+//! system's interpreter is executed instead of the script.
 
 use std::{
     fs::File,
@@ -11,46 +11,46 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use super::{outcome::StartProblem, own};
+use super::{outcome::StartProblem, own_files};
 
 /// The first bytes of an ELF file.
 const ELF_MAGIC: &[u8] = b"\x7fELF";
-/// The number of bytes that show the kind of a file; the kernel reads as many for the first line of a script.
+/// The number of bytes that show the kind of a file. The kernel reads as many for the first line of a script.
 const FIRST_BYTES: u64 = 256;
 /// The folders of the system's programs that a script may name, in the order of the sandbox's `PATH`.
 const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
-/// The folders of interpreters that are linked from the folders of programs.
+/// The folders of interpreters to which the folders of programs link.
 const LIBRARIES: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
 
-/// The facts about a program that the sandbox needs before it starts it.
+/// The facts about a program that the sandbox needs before the start.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Program {
-    /// Interpreters that the kernel executes on the way to it.
+    /// The interpreters that the kernel executes to start the program.
     pub(super) executable: Vec<PathBuf>,
-    /// The files under the names by which they are requested, which may be links.
+    /// The names by which the files are requested, which may be links.
     pub(super) named: Vec<PathBuf>,
-    /// The way to run a script.
+    /// The way to run a script, if the program is one.
     pub(super) script: Option<Script>,
 }
 
-/// The program that reads a script, as the kernel and `env` would find it. It is executed in their place, so that a
-/// script needs no execution but the one that starts it.
+/// The interpreter of a script, found like the kernel and `env` would find it. It is executed directly, so a script
+/// needs only one execution.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Script {
     /// The interpreter's file.
     pub(super) interpreter: PathBuf,
-    /// The interpreter's name for itself, and its arguments before the script.
+    /// The interpreter's name for itself, followed by its arguments before the script.
     pub(super) words: Vec<String>,
-    /// Variables that the first line sets.
+    /// The environment variables set by the first line.
     pub(super) environment: Vec<(String, String)>,
 }
 
-/// Examines the file at `path`, following symbolic links. `own` are the grader's own programs, which are never run as a
+/// Examines the file at `path`, following symbolic links. The grader's own programs, `own`, are never run as a
 /// submission, an interpreter or a loader.
 ///
 /// # Errors
 ///
-/// The reason why it cannot be started on this machine.
+/// The reason why the file cannot be started on this machine.
 pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProblem> {
     let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,
@@ -68,7 +68,7 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     if metadata.permissions().mode() & 0o111 == 0 {
         return Err(StartProblem::NotExecutable);
     }
-    // A program that may be executed and not read would also be closed to the supervisor's checks.
+    // A program that may be executed but not read would also be closed to the supervisor's checks.
     let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
     match (start.strip_prefix(b"#!"), other_system(&start)) {
         (Some(line), _) => find_interpreter(line, own, 0),
@@ -77,32 +77,33 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     }
 }
 
-/// Returns the system whose programs begin with these bytes.
+/// Returns the operating system whose programs begin with the bytes `start`.
 fn other_system(start: &[u8]) -> Option<&'static str> {
     match *start.first_chunk::<8>()? {
         [b'M', b'Z', ..] => Some("Windows"),
         [0xcf | 0xce, 0xfa, 0xed, 0xfe, ..] => Some("macOS"),
-        // Several programs in one file, and their number; in a Java class its version is there, from 45 on.
+        // The number of programs in one file. A Java class has its version there, from 45 on.
         [0xca, 0xfe, 0xba, 0xbe, 0, 0, 0, 1..45] => Some("macOS"),
         _ => None,
     }
 }
 
-/// Returns the bytes that show the kind of the file; `None` if it can't be read.
+/// Returns the bytes that show the kind of the file; `None` if it cannot be read.
 fn first_bytes(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     File::open(path).ok()?.take(FIRST_BYTES).read_to_end(&mut start).ok()?;
     Some(start)
 }
 
-/// Returns the way to a script's interpreter, given its first line without `#!`.
+/// Returns a script's interpreter, given its first line without `#!`.
 ///
-/// Each program that is named here becomes executable for the submission. It must therefore be one of the system's own
-/// programs, after all links and `..` are resolved: a script that names the grader's program would be graded by its own
-/// answers. Nothing is looked up outside the system's folders, because that would reveal what files there are.
+/// Each program named in the line becomes executable for the submission. It must therefore be one of the system's own
+/// programs, after all links and `..` are resolved, because a script that names the grader's program would be graded by
+/// the grader's answers. Nothing outside the system's folders is examined, because that would reveal which files exist
+/// there.
 fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
-    /// The depth of interpreters that are scripts themselves; the kernel follows as many.
-    const DEEPEST: u32 = 4;
+    /// The maximum depth of interpreters that are scripts; the same as the kernel's.
+    const MAX_DEPTH: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
     let hint = "; install it, or name another one";
     let missing = |name: &str, hint: &'static str| StartProblem::MissingInterpreter {
@@ -110,9 +111,9 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         hint: hint.into(),
     };
     if line.ends_with('\r') {
-        // The kernel takes it for the last character of the name.
+        // The kernel takes the carriage return for the last character of the name.
         let hint =
-            ": a carriage return is part of its name, because the lines end in CR LF; convert them with dos2unix";
+            ": its name ends with a carriage return, because the lines end with CR LF; convert them with dos2unix";
         return Err(missing(line.trim_start(), hint));
     }
     let line = line.trim();
@@ -145,7 +146,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
     }
     let start = first_bytes(&resolved).ok_or(StartProblem::NotPermitted)?;
     let mut program = match start.strip_prefix(b"#!") {
-        Some(line) if depth < DEEPEST => {
+        Some(line) if depth < MAX_DEPTH => {
             let outer = find_interpreter(line, own, depth + 1)?;
             let inner = std::mem::take(&mut script.words);
             let by = outer.script.clone().unwrap_or_default();
@@ -164,10 +165,9 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
     Ok(Program { script: Some(script), ..program })
 }
 
-/// Returns the command that `env` would look up, with its arguments, given the words after `env` in a script's first
-/// line.
+/// Returns the command that `env` would find, with its arguments, given the words after `env` in a script's first line.
 fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String, Vec<String>), StartProblem> {
-    // Without -S the kernel passes all that follows as one word.
+    // Without -S the kernel passes the rest of the line as one word.
     let Some(split) = rest.strip_prefix("-S").or_else(|| rest.strip_prefix("--split-string=")) else {
         return match rest {
             "" => Err(StartProblem::NoInterpreter),
@@ -183,23 +183,23 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
     Ok((name.to_owned(), words.map(str::to_owned).collect()))
 }
 
-/// Returns whether the path is in one of the system's folders, by its words alone.
+/// Returns whether the path is textually in one of the system's folders.
 fn is_systems(path: &Path) -> bool {
     let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
     plain && PROGRAMS.iter().chain(&LIBRARIES).any(|folder| path.starts_with(folder))
 }
 
-/// Returns the resolved path of an interpreter, which must be the system's: beneath one of its folders, and not the
-/// grader's.
+/// Returns the resolved path of an interpreter. It must be below one of the system's folders, and not a program of the
+/// grader.
 fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
     let resolved = path.canonicalize().map_err(|_| refused())?;
     let beneath = |folder: &&str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
-    // The bit by which every user may execute. A file that only its owner may execute would be rejected only when it is
-    // too late.
+    // The permission bit that lets every user execute. A file that only its owner may execute would otherwise be
+    // rejected too late.
     const EXECUTE: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
-    let named = [path, &resolved].into_iter().any(own::is_name);
+    let named = [path, &resolved].into_iter().any(own_files::is_name);
     let beneath = PROGRAMS.iter().chain(&LIBRARIES).any(beneath);
     if !beneath || named || is_one_of(&resolved, own) || !resolved.ancestors().all(open) {
         return Err(refused());
@@ -207,14 +207,14 @@ fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     Ok(resolved)
 }
 
-/// Returns whether the path leads to one of these files, whatever its name.
+/// Returns whether the path leads to one of the files `own`, whatever its name.
 fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
     let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
     let here = identity(path);
     here.is_some() && own.iter().any(|own| identity(own) == here)
 }
 
-/// Checks that a file with this beginning is an ELF program for this machine.
+/// Checks that a file beginning with `start` is an ELF program for this machine.
 fn elf(start: &[u8]) -> Result<(), StartProblem> {
     if !start.starts_with(ELF_MAGIC) {
         return Err(StartProblem::NotAProgram);

@@ -1,8 +1,8 @@
-//! The system calls that the standard library does not offer, each behind a safe function: most are `rustix`'s.
+//! The system calls that the standard library does not offer, each wrapped in a safe function; most use `rustix`.
 //!
 //! This file, `machine.rs` and `mounts.rs` are the sandbox's only files with `unsafe` code. Every function passes the
-//! kernel valid pointers to live values and turns its answer into a `Result`; none keeps a pointer. The one call with a
-//! condition of its own, [`fork`], checks that condition.
+//! kernel valid pointers to live values, converts its result into a `Result`, and keeps no pointer. The only call with
+//! a precondition, [`fork`], checks it.
 
 #![expect(unsafe_code, reason = "fork, execve, seccomp and their kin have no safe wrapper among the dependencies")]
 
@@ -32,33 +32,33 @@ pub(super) use rustix::{
     process::Resource,
 };
 
-/// Turns the kernel's -1 into the error it left behind.
+/// Converts a result of -1 into the error of the kernel.
 pub(super) fn check(answer: i64) -> io::Result<i64> {
     if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
 }
 
-/// Returns the error of a call whose answer has no other content.
+/// Returns the error of a call whose result has no other content.
 pub(super) fn check_answer(answer: i32) -> io::Result<()> {
     check(i64::from(answer)).map(drop)
 }
 
 /// The two sides of a fork.
 pub(super) enum Fork {
-    /// We are the child.
+    /// The child process.
     Child,
-    /// We are the parent; the child's process id.
+    /// The parent process, with the child's process id.
     Parent(i32),
 }
 
-/// The proof that this process, or the one that it was forked from, has one thread, and starts none: the copy of its
-/// memory that a child gets is consistent.
+/// The proof that this process, or the one that it was forked from, has one thread, and starts none. The memory copy of
+/// a forked child is then consistent.
 pub(super) struct SingleThread(());
 
-/// Proves that this process has one thread.
+/// Checks that this process has one thread.
 ///
 /// # Errors
 ///
-/// When the process has more than one thread: its child could find locks that are held forever.
+/// If the process has more than one thread, because its child could find locks that are held forever.
 pub(super) fn single_thread() -> io::Result<SingleThread> {
     match std::fs::read_dir("/proc/self/task")?.count() {
         1 => Ok(SingleThread(())),
@@ -96,12 +96,12 @@ pub(super) fn group() -> u32 {
     rustix::process::getegid().as_raw()
 }
 
-/// Starts a session of its own, without a controlling terminal.
+/// Starts a new session without a controlling terminal.
 pub(super) fn new_session() -> io::Result<()> {
     Ok(rustix::process::setsid().map(drop)?)
 }
 
-/// Makes this process adopt the orphans among its descendants.
+/// Makes this process adopt orphans among its descendants.
 pub(super) fn become_reaper() -> io::Result<()> {
     Ok(rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?)
 }
@@ -111,12 +111,12 @@ pub(super) fn die_with_parent() -> io::Result<()> {
     Ok(rustix::process::set_parent_process_death_signal(Some(Signal::KILL))?)
 }
 
-/// Gives up forever the gain of privileges by executing a program.
+/// Prevents permanently that executing a program gains privileges.
 pub(super) fn no_new_privileges() -> io::Result<()> {
     Ok(rustix::thread::set_no_new_privs(true)?)
 }
 
-/// Sets a limit, soft and hard, never above the hard limit that is already there.
+/// Sets a soft and hard limit, never above the existing hard limit.
 pub(super) fn limit(resource: Resource, value: u64) -> io::Result<()> {
     let value = Some(getrlimit(resource).maximum.map_or(value, |most| value.min(most)));
     Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
@@ -130,8 +130,8 @@ pub(super) fn switch_user(id: u32) -> io::Result<()> {
     Ok(rustix::thread::set_thread_res_uid(user, user, user)?)
 }
 
-/// Calls a function with the file permissions of another user: root may then read that user's `/proc` entries even
-/// without the capability to trace. Only the supervisor's single thread does this, and it always restores its own.
+/// Calls a function with the file permissions of another user. Root can then read that user's `/proc` entries without
+/// the capability to trace. Only the supervisor's single thread does this, and it always restores its own user.
 pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) -> T {
     let Some(user) = user else { return action() };
     // SAFETY: integers only; both return the previous id, and change nothing if it is not allowed.
@@ -145,14 +145,14 @@ pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) ->
     result
 }
 
-/// Makes these the standard streams, which stay open across `execve`.
+/// Installs the three descriptors as standard input, output and error, which stay open across `execve`.
 pub(super) fn connect(input: &OwnedFd, output: &OwnedFd, error: &OwnedFd) -> io::Result<()> {
     rustix::stdio::dup2_stdin(input)?;
     rustix::stdio::dup2_stdout(output)?;
     Ok(rustix::stdio::dup2_stderr(error)?)
 }
 
-/// Returns a copy of the descriptor under a number from `least` on, closed by the next `execve`.
+/// Returns a copy of the descriptor with a number of at least `least`, closed by the next `execve`.
 pub(super) fn duplicate_from(fd: BorrowedFd<'_>, least: u32) -> io::Result<OwnedFd> {
     Ok(rustix::io::fcntl_dupfd_cloexec(fd, least.cast_signed())?)
 }
@@ -168,7 +168,7 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     if unsafe { libc::syscall(libc::SYS_close_range, 3_u32, u32::MAX, libc::CLOSE_RANGE_CLOEXEC) } == 0 {
         return Ok(());
     }
-    // Kernels before 5.11 do not know the flag: mark each one.
+    // Kernels before 5.11 do not support the flag, so each descriptor is marked.
     for entry in std::fs::read_dir("/proc/self/fd")? {
         let Some(fd) = entry?.file_name().to_str().and_then(|name| name.parse::<RawFd>().ok()) else { continue };
         if fd > 2 {
@@ -179,8 +179,8 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     Ok(())
 }
 
-/// Returns the signals that this process ignores. Only these stay as they are when a program is executed: signals with
-/// a function get the default reaction then.
+/// Returns the signals that this process ignores. Only ignored signals stay ignored when a program is executed; handled
+/// signals get the default reaction.
 pub(super) fn ignored_signals() -> Vec<i32> {
     let is_ignored = |signal: &i32| {
         // SAFETY: an all-zero action is valid and outlives the call, which only reads; the kernel rejects numbers
@@ -193,7 +193,7 @@ pub(super) fn ignored_signals() -> Vec<i32> {
     (1..=64).filter(is_ignored).collect()
 }
 
-/// Restores the default reaction to these signals and unblocks all.
+/// Restores the default reaction to `ignored` signals, and unblocks all signals.
 pub(super) fn default_signals(ignored: &[i32]) {
     // SAFETY: the default action needs no function; the kernel rejects numbers without a signal. The set is initialized
     // by `sigemptyset` before it is read.
@@ -207,7 +207,7 @@ pub(super) fn default_signals(ignored: &[i32]) {
     }
 }
 
-/// Sets the mask of permission bits that new files do not get.
+/// Sets the permission bits that new files do not get (umask).
 pub(super) fn set_file_mask(mask: u32) {
     rustix::process::umask(Mode::from_raw_mode(mask));
 }
@@ -221,9 +221,9 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     check_answer(unsafe { libc::kill(pid, signal) })
 }
 
-/// Kills all processes in this process namespace if this process is the namespace's first, and returns whether it is;
-/// does nothing otherwise.
-pub(super) fn kill_everybody_inside() -> bool {
+/// Kills all processes of this process namespace if this process is its first, and returns whether it is; otherwise
+/// does nothing.
+pub(super) fn kill_namespace() -> bool {
     let is_first = std::process::id() == 1;
     if is_first {
         // SAFETY: integers only. For the first process of a namespace -1 means all other processes in it, and none
@@ -235,23 +235,23 @@ pub(super) fn kill_everybody_inside() -> bool {
 
 /// A process that has ended.
 pub(super) struct ReapedProcess {
-    /// Which.
+    /// The process id.
     pub(super) pid: i32,
-    /// The process's raw wait status.
+    /// The raw wait status of the process.
     pub(super) status: i32,
 }
 
-/// Reaps one ended child without waiting; `None` when none has ended.
+/// Reaps one ended child without waiting; `None` if none has ended.
 ///
 /// # Errors
 ///
-/// `ECHILD` when there is no child at all.
+/// `ECHILD` if there is no child at all.
 pub(super) fn reap() -> io::Result<Option<ReapedProcess>> {
     let ended = rustix::process::wait(WaitOptions::NOHANG)?;
     Ok(ended.map(|(pid, status)| ReapedProcess { pid: pid.as_raw_pid(), status: status.as_raw() }))
 }
 
-/// Waits until the child has ended; the answer is its exit code, or 128 and the signal that ended it.
+/// Waits until the child has ended. Returns its exit code, or 128 plus the signal that ended it.
 pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
     let ended = rustix::io::retry_on_intr(|| rustix::process::waitpid(Pid::from_raw(pid), WaitOptions::empty()))?;
     let (_, status) = ended.ok_or(io::ErrorKind::WouldBlock)?;
@@ -259,7 +259,7 @@ pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
     Ok(code.unwrap_or_default() as u8)
 }
 
-/// Returns the processor time and the largest resident set (bytes) of all reaped children and theirs.
+/// Returns the processor time and the largest resident set (bytes) of all reaped children and their descendants.
 pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     // SAFETY: an all-zero `rusage` is a valid value; the kernel fills it.
     let usage = unsafe {
@@ -276,15 +276,15 @@ pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
 /// The result of [`poll`] for a descriptor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Readiness {
-    /// Nothing to do.
+    /// There is nothing to do.
     Idle,
-    /// There is something to read, or its end.
+    /// There is data to read, or the end of the stream.
     Ready,
-    /// The other end is closed, and there is nothing to read.
+    /// The other end is closed, and there is no data to read.
     HungUp,
 }
 
-/// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns which.
+/// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns the state of each.
 pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
     let there = fds.iter().flatten();
     let mut list: Vec<PollFd<'_>> = there.map(|fd| PollFd::from_borrowed_fd(*fd, PollFlags::IN)).collect();
@@ -312,12 +312,12 @@ pub(super) fn process_descriptor(pid: i32) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_raw(pid)?, PidfdFlags::empty()).ok()
 }
 
-/// Makes reads and writes on the descriptor return immediately instead of waiting, or wait again.
+/// Sets whether reads and writes on the descriptor wait or return immediately.
 pub(super) fn set_blocking(fd: BorrowedFd<'_>, blocking: bool) -> io::Result<()> {
     Ok(rustix::io::ioctl_fionbio(fd, !blocking)?)
 }
 
-/// Opens `name` beneath the folder with `flags`, never leaving the folder and never following a symbolic link.
+/// Opens `name` below the folder with `flags`, never leaving the folder and never following a symbolic link.
 pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: OFlags) -> io::Result<OwnedFd> {
     let flags = flags | OFlags::CLOEXEC | OFlags::NOFOLLOW;
     let inside = ResolveFlags::BENEATH | ResolveFlags::NO_SYMLINKS | ResolveFlags::NO_MAGICLINKS;
@@ -329,18 +329,18 @@ pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: OFlags) -
     }
 }
 
-/// Gives an open file or folder (also one opened with `O_PATH`) to a user and group.
+/// Changes the owner of an open file or folder (including one opened with `O_PATH`) to a user and group.
 pub(super) fn change_owner(fd: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     let (user, group) = (Some(Uid::from_raw(user)), Some(Gid::from_raw(group)));
     Ok(rustix::fs::chownat(fd, c"", user, group, AtFlags::EMPTY_PATH)?)
 }
 
-/// Makes the open folder the current one.
+/// Changes the current folder to the open folder.
 pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
     Ok(rustix::process::fchdir(fd)?)
 }
 
-/// Returns whether the current user may do this with the path.
+/// Returns whether the current user has the access `mode` to the path.
 pub(super) fn accessible(path: &CStr, mode: Access) -> bool {
     rustix::fs::access(path, mode).is_ok()
 }
@@ -355,7 +355,7 @@ fn pointers(strings: &[CString]) -> Vec<*const libc::c_char> {
     strings.iter().map(|text| text.as_ptr()).chain([std::ptr::null()]).collect()
 }
 
-/// Executes the program at `path` in place of this one; returns only the error.
+/// Replaces this process with the program at `path`; returns only if there is an error.
 pub(super) fn execute(path: &CStr, arguments: &[CString], environment: &[CString]) -> io::Error {
     let (arguments, environment) = (pointers(arguments), pointers(environment));
     // SAFETY: both lists end with a null pointer and, like the path, outlive the call.
@@ -363,7 +363,7 @@ pub(super) fn execute(path: &CStr, arguments: &[CString], environment: &[CString
     io::Error::last_os_error()
 }
 
-/// Executes the open file in place of this program; returns only the error.
+/// Replaces this process with the program in the open file; returns only if there is an error.
 pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environment: &[CString]) -> io::Error {
     let (arguments, environment) = (pointers(arguments), pointers(environment));
     // SAFETY: as in `execute`; the empty path is a constant and means the descriptor itself.
@@ -380,7 +380,7 @@ pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environm
     io::Error::last_os_error()
 }
 
-/// Installs a seccomp filter for this thread and its children. With `listener`, calls that the filter hands to user
+/// Installs a seccomp filter for this thread and its children. With `listener`, calls that the filter passes to user
 /// space are announced on the returned descriptor.
 pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Result<Option<OwnedFd>> {
     #[repr(C)]
@@ -400,7 +400,7 @@ pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Res
 
 /// A system call that waits for a decision.
 pub(super) struct PendingCall {
-    /// The announcement's number.
+    /// The number of the announcement.
     pub(super) id: u64,
     /// The calling thread.
     pub(super) thread: u32,
@@ -410,7 +410,7 @@ pub(super) struct PendingCall {
     pub(super) arguments: [u64; 6],
 }
 
-/// Takes the next announcement; `None` when the caller has died meanwhile.
+/// Receives the next announcement; `None` if the caller has died.
 pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<PendingCall>> {
     // SAFETY: an all-zero notification is valid, and the kernel requires zeros.
     let mut notification: libc::seccomp_notif = unsafe { std::mem::zeroed() };
@@ -440,7 +440,7 @@ pub(super) fn processor_time(of_thread: bool) -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
 
-/// Returns the time since the clock's beginning: the calendar's clock, or the steady one.
+/// Returns the time since the epoch of a clock: the calendar's clock, or the monotonic clock.
 pub(super) fn time_by(calendar: bool) -> Duration {
     let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
@@ -451,13 +451,13 @@ pub(super) fn time_by(calendar: bool) -> Duration {
 pub(super) enum CallAnswer {
     /// The call continues as if it had not been announced.
     GoOn,
-    /// The call has succeeded already.
+    /// The call has already succeeded.
     Done,
     /// The call fails with this error number.
     Refused(i32),
 }
 
-/// Answers the announced call in the kernel's place.
+/// Answers the announced call instead of the kernel.
 pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> io::Result<()> {
     let (error, flags) = match answer {
         CallAnswer::GoOn => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
@@ -469,22 +469,22 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> i
     check_answer(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
 }
 
-/// The largest number of descriptors in one message.
-const MOST_DESCRIPTORS: usize = 8;
+/// The maximum number of descriptors in one message.
+const MAX_DESCRIPTORS: usize = 8;
 
-/// Sends one byte and, along with it, descriptors.
+/// Sends one byte together with descriptors.
 pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [BorrowedFd<'_>; N]) -> io::Result<()> {
-    const { assert!(N <= MOST_DESCRIPTORS, "they fit into the control space") };
-    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
+    const { assert!(N <= MAX_DESCRIPTORS, "they fit into the control space") };
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MAX_DESCRIPTORS))];
     let mut control = SendAncillaryBuffer::new(&mut space);
     control.push(SendAncillaryMessage::ScmRights(&fds));
     rustix::net::sendmsg(to, &[IoSlice::new(&[byte])], &mut control, SendFlags::NOSIGNAL)?;
     Ok(())
 }
 
-/// Receives bytes and the descriptors that were sent with them. No bytes mean that the other side is closed.
+/// Receives bytes together with descriptors. No bytes mean that the other side is closed.
 pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
-    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MOST_DESCRIPTORS))];
+    let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MAX_DESCRIPTORS))];
     let mut control = RecvAncillaryBuffer::new(&mut space);
     let parts = &mut [IoSliceMut::new(buffer)];
     let received = rustix::net::recvmsg(from, parts, &mut control, RecvFlags::CMSG_CLOEXEC)?;
@@ -495,12 +495,12 @@ pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::R
     Ok((received.bytes, fds.flatten().collect()))
 }
 
-/// Bytes of one page of memory.
+/// Returns the size of a page of memory, in bytes.
 pub(super) fn page_size() -> u64 {
     rustix::param::page_size() as u64
 }
 
-/// Returns Landlock's version in the running kernel; 0 when there is none.
+/// Returns Landlock's version in the running kernel; 0 if there is none.
 pub(super) fn landlock_version() -> i32 {
     let version_flag = 1_u32;
     // SAFETY: with this flag the kernel reads no structure: the pointer is null and the size zero.

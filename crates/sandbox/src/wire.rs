@@ -1,9 +1,9 @@
 //! The messages between the grader and its supervisor process.
 //!
-//! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if need
-//! be, a command byte. A working folder in memory is returned there, open. The supervisor answers on its standard
-//! output with length-prefixed [`Event`]s; the last one is followed by the captured bytes. Paths are sent as bytes,
-//! because they need not be UTF-8.
+//! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if
+//! needed, a command byte. An open working folder in memory is returned on the same socket. The supervisor answers on
+//! its standard output with length-prefixed [`Event`]s; the last one is followed by the captured bytes. Paths are sent
+//! as bytes, because they may not be UTF-8.
 
 use std::{
     io::{self, Read, Write},
@@ -19,43 +19,43 @@ use super::job::Limits;
 
 /// The hidden first argument that turns the binary into the supervisor.
 pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
-/// Command byte: stop the program, the grader has seen enough.
+/// The command byte that stops the program.
 pub(super) const COMMAND_CANCEL: u8 = b'c';
-/// Few messages are longer than this.
-const USUAL_MESSAGE: u64 = 4 << 10;
-/// No message is longer than this; a longer one means that the streams are out of step.
-const LONGEST_MESSAGE: u64 = 64 << 20;
+/// The size that few messages exceed, in bytes.
+const USUAL_MESSAGE_BYTES: u64 = 4 << 10;
+/// The maximum size of a message, in bytes. A larger size means that the streams are out of step.
+const MAX_MESSAGE_BYTES: u64 = 64 << 20;
 
-/// Starts a run in a supervisor that serves several. Comes with three descriptors: the channel of commands, the channel
-/// of answers, and the working folder on the disk.
+/// The byte that starts a run in a supervisor of several runs. It is sent with three descriptors: the channel of
+/// commands, the channel of answers, and the working folder on disk.
 pub(super) const RUN: u8 = b'r';
-/// Announces a working folder in memory to the grader. It is sent with the folder.
+/// The byte that announces a working folder in memory to the grader. It is sent with the folder.
 pub(super) const FOLDER: u8 = b'f';
 
-/// Bytes of a path or an argument.
+/// The bytes of a path or an argument.
 pub(super) type RawBytes = Vec<u8>;
 
-/// Turns a path into bytes.
+/// Converts a path into bytes.
 pub(super) fn raw(path: &Path) -> RawBytes {
     path.as_os_str().as_bytes().to_vec()
 }
 
-/// Turns bytes back into a path.
+/// Converts bytes into a path.
 pub(super) fn path(raw: &RawBytes) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
-/// Returns the name of an entry of a folder, if these bytes are such a name: it leads to no other folder.
+/// Returns the bytes as the name of a folder's entry, if the name does not leave the folder.
 pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
     let leads_on = raw.is_empty() || raw == b"." || raw == b".." || raw.iter().any(|byte| matches!(byte, b'/' | 0));
     (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
 }
 
-/// The layers that the supervisor must put up. A requested layer that fails is an error, never skipped.
+/// The layers that the supervisor must set up. A requested layer that fails is an error, never skipped.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Walls {
     pub(super) landlock: bool,
-    /// Rules of an older kernel than ours; 0 for the newest.
+    /// The version of the Landlock rules, if they are those of an older kernel; 0 for the newest.
     pub(super) landlock_version: u8,
     pub(super) scopes: bool,
     pub(super) seccomp: bool,
@@ -73,38 +73,38 @@ pub(super) struct RunOrder {
     pub(super) arguments: Vec<RawBytes>,
     pub(super) environment: Vec<(RawBytes, RawBytes)>,
     pub(super) readable: Vec<RawBytes>,
-    /// Interpreters that the kernel executes on the way to the program.
+    /// The interpreters that the kernel executes to start the program.
     pub(super) executable: Vec<RawBytes>,
-    /// The files' names as the program and the kernel use them, which may be links.
+    /// The names that the program and the kernel use for the files, which may be links.
     pub(super) named: Vec<RawBytes>,
-    /// The grader's own files, which no run may see. Looked up by the grader, once for all runs.
+    /// The grader's own files, which no run may see. The grader finds them once for all runs.
     pub(super) own: Vec<RawBytes>,
     /// The name of the trace in the working folder.
     pub(super) trace: Option<RawBytes>,
-    /// Files that are written into the working folder, by name, with their length: their bytes follow the order. Only
-    /// if that folder is in memory.
+    /// The files that are written into the working folder, by name, with their length; their bytes follow the order.
+    /// Used only if the folder is in memory.
     pub(super) files: Vec<(RawBytes, u64)>,
-    /// Whether the working folder is in memory. The supervisor then hands it to the grader.
+    /// Whether the working folder is in memory. The supervisor then sends it to the grader.
     pub(super) volatile: bool,
     pub(super) tools: bool,
-    /// The interpreter of a script, which is executed in its place.
+    /// The interpreter of a script, which is executed instead of it.
     pub(super) interpreter: Option<RawBytes>,
-    /// The interpreter's name for itself and its arguments before the script.
+    /// The interpreter's name for itself, followed by its arguments before the script.
     pub(super) words: Vec<RawBytes>,
-    /// Whether the program may carry a sanitizer, which reserves terabytes of address space.
+    /// Whether the program may use a sanitizer, which reserves terabytes of address space.
     pub(super) sanitizers: bool,
     pub(super) walls: Walls,
     pub(super) limits: Limits,
 }
 
 impl RunOrder {
-    /// Bytes that the working folder may hold, the trace included.
+    /// Returns the maximum size of the working folder in bytes, including the trace.
     pub(super) fn folder_bytes(&self) -> u64 {
         let trace = if self.trace.is_some() { self.limits.trace_bytes } else { 0 };
         self.limits.folder_bytes.saturating_add(trace)
     }
 
-    /// Returns the greatest size of a file. One byte beyond the limit of the trace shows that it is too long.
+    /// Returns the maximum size of a file. One byte beyond the limit of the trace shows that it is too long.
     pub(super) fn file_bytes(&self) -> u64 {
         let trace = if self.trace.is_some() { self.limits.trace_bytes.saturating_add(1) } else { 0 };
         self.limits.folder_bytes.max(trace)
@@ -114,19 +114,19 @@ impl RunOrder {
 /// A message of the supervisor.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Event {
-    /// The child was forked: its session, unless its process namespace has numbers of its own,
-    /// and the user it runs as if it has its own.
+    /// The child was forked. Holds its session, unless its process namespace has separate numbers, and its own user, if
+    /// it has one.
     Ready { session: Option<i32>, user: Option<u32> },
-    /// The sandbox could not be put up; our fault.
+    /// The sandbox could not be set up, which is an error of the grader or host.
     Failed(Failure),
     /// All processes are dead; the captured bytes of both streams follow.
     Done(Report),
 }
 
-/// The step of the set-up whose failure is the program's and not ours.
+/// The setup step whose failure is the program's and not the grader's.
 pub(super) const EXECUTE: &str = "execute the program";
 
-/// A step of the set-up that failed.
+/// A failed setup step.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Failure {
     pub(super) stage: String,
@@ -134,13 +134,13 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    /// Creates a failure of `stage` with the error's number (0 when it has none).
+    /// Creates a failure of `stage` with the error's number (0 if it has none).
     pub(super) fn new(stage: impl Into<String>, error: &io::Error) -> Self {
         Self { stage: stage.into(), errno: error.raw_os_error().unwrap_or(0) }
     }
 }
 
-/// Makes an error of the system a failure of this stage.
+/// Converts an error of the system into a failure of the stage `name`.
 pub(super) fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
     move |error| Failure::new(name, &error)
 }
@@ -148,9 +148,9 @@ pub(super) fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
 /// The facts of a finished run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
-    /// The first reason to kill, if any.
+    /// The first reason to kill the program, if there was one.
     pub(super) cause: Option<RunEnd>,
-    /// The main process's raw wait status.
+    /// The raw wait status of the main process.
     pub(super) status: i32,
     /// The error number of `execve`, if the program never ran.
     pub(super) exec_errno: Option<i32>,
@@ -159,17 +159,17 @@ pub(super) struct Report {
     pub(super) peak_memory: u64,
     /// Whether the trace is longer than its limit.
     pub(super) trace_over: bool,
-    /// Whether the folder is over a limit at the end.
+    /// Whether the folder exceeds a limit at the end.
     pub(super) folder_over: bool,
     pub(super) stdout_bytes: u64,
     pub(super) stderr_bytes: u64,
     pub(super) stdout_truncated: bool,
     pub(super) stderr_truncated: bool,
-    /// Processes that could not be killed.
+    /// The number of processes that could not be killed.
     pub(super) survivors: u32,
 }
 
-/// The results of the one-shot probe; a text is the reason why a layer does not hold.
+/// The results of the probe; a text is the reason why a layer does not hold.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Probe {
     pub(super) root: bool,
@@ -183,15 +183,15 @@ pub(super) struct Probe {
     pub(super) notify: Option<String>,
     pub(super) own_user: Option<String>,
     pub(super) reaper: Option<String>,
-    /// The reason why copies of programs can't be executed.
+    /// The reason why copies of programs cannot be executed.
     pub(super) execution: Option<String>,
-    /// Whether they are executed in memory, because the temporary folder forbids it.
+    /// Whether copies are executed in memory, because the temporary folder forbids execution.
     pub(super) from_memory: bool,
     pub(super) namespaces: Option<String>,
     pub(super) group: Option<String>,
-    /// The quantities that the kernel limits for a group here.
+    /// The quantities that the kernel limits for a control group.
     pub(super) group_controls: Vec<String>,
-    /// Whether a group here ends as a whole.
+    /// Whether a control group can be ended as a whole.
     pub(super) group_ends: bool,
 }
 
@@ -201,7 +201,7 @@ pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<
     to.flush()
 }
 
-/// Returns one message as it is written.
+/// Returns the encoded form of one message.
 pub(super) fn packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     let body = serde_json::to_vec(message)?;
     let mut packet = (body.len() as u64).to_le_bytes().to_vec();
@@ -209,28 +209,28 @@ pub(super) fn packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     Ok(packet)
 }
 
-/// Reads as many bytes as were promised. Memory grows as they arrive.
+/// Reads `length` bytes. Memory grows as they arrive.
 pub(super) fn receive_bytes(from: impl Read, length: u64) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::with_capacity(usize::try_from(length.min(USUAL_MESSAGE)).unwrap_or_default() + 1);
+    let mut bytes = Vec::with_capacity(usize::try_from(length.min(USUAL_MESSAGE_BYTES)).unwrap_or_default() + 1);
     if from.take(length).read_to_end(&mut bytes)? as u64 != length {
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
     Ok(bytes)
 }
 
-/// Reads one message, and not a byte more.
+/// Reads exactly one message.
 pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T> {
     let mut length = [0; 8];
     from.read_exact(&mut length)?;
     let length = u64::from_le_bytes(length);
-    if length > LONGEST_MESSAGE {
+    if length > MAX_MESSAGE_BYTES {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
     }
-    // The length is a claim.
+    // The length is not trusted.
     Ok(serde_json::from_slice(&receive_bytes(from, length)?)?)
 }
 
-/// Reads as many messages of each kind as these bytes hold, and requires that each is the same after sending: for the
+/// Reads as many messages of each kind as the bytes hold, and requires that each is the same after sending; for the
 /// fuzz target. Returns the number of messages.
 #[doc(hidden)]
 #[must_use]

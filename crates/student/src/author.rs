@@ -1,27 +1,27 @@
-//! The author of a program: the mistakes that are made in it.
+//! The author of a program, with the mistakes made in it.
 use super::{Area, Mistake, StepMistake};
 
-/// The program's author: makes one mistake, none, or several of different parts of the assignment.
+/// The author of a program, who makes one mistake, none, or several in different parts of the assignment.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Student {
-    mistakes: [Option<Mistake>; Student::MOST],
-    /// The areas of these mistakes, a bit each: most questions are about areas without one.
+    mistakes: [Option<Mistake>; Student::MAX_MISTAKES],
+    /// The areas of the mistakes, one bit each; most queries are about areas without a mistake.
     areas: u64,
-    /// Whether one of them is a slip in a quantity ([`StepMistake::Edit`]).
+    /// Whether one of the mistakes is a slip in a quantity ([`StepMistake::Edit`]).
     pub(super) has_slips: bool,
     right_approach: bool,
 }
 
 impl Student {
-    /// The greatest number of mistakes of one student.
-    pub const MOST: usize = 8;
+    /// The maximum number of mistakes of one student.
+    pub const MAX_MISTAKES: usize = 8;
 
-    /// Creates a student who makes this mistake.
+    /// Creates a student with an optional mistake.
     pub fn new(mistake: Option<Mistake>) -> Self {
         Self::default().with_mistake(mistake)
     }
 
-    /// Returns the student with this mistake added. Of two mistakes in one formula or rule only the first is made.
+    /// Returns the student with a mistake added. Of two mistakes in one formula or rule, only the first is made.
     #[must_use]
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
@@ -32,12 +32,12 @@ impl Student {
         self
     }
 
-    /// Returns the mistakes, which come before all free places.
+    /// Returns the mistakes, which precede all free slots.
     pub(super) fn mistakes(&self) -> impl Iterator<Item = Mistake> {
         self.mistakes.iter().map_while(|mistake| *mistake)
     }
 
-    /// Returns whether the student makes this mistake.
+    /// Returns whether the student makes `mistake`.
     pub fn makes(&self, mistake: impl Into<Mistake>) -> bool {
         let mistake = mistake.into();
         self.mistakes().any(|made| made == mistake)
@@ -48,26 +48,26 @@ impl Student {
         self.mistakes[0].is_none()
     }
 
-    /// Returns the mistake of these parts of the assignment, if many are distinguished in one place; the first part
-    /// that has one counts.
+    /// Returns the mistake in one of `areas`, if many mistakes are distinguished in one place; the first area with a
+    /// mistake counts.
     pub fn mistake_in(&self, areas: &[Area]) -> Option<Mistake> {
         let mut here = areas.iter().filter(|area| self.areas & bit(**area) != 0);
         here.find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
-    /// Returns the first of these mistakes that the student makes.
+    /// Returns the first of `rows` that the student makes.
     pub(super) fn mistake_among(&self, rows: &[Mistake]) -> Option<Mistake> {
         self.mistakes().find(|mistake| rows.contains(mistake))
     }
 
-    /// Returns the student with the supplied particle-edge approach put right (collisions.md 2). That is correct, too,
-    /// and independent of the mistake.
+    /// Returns the student with the corrected particle-edge approach (collisions.md 2). That is also correct, and
+    /// independent of the mistake.
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { right_approach: true, ..self }
     }
 
-    /// Returns whether the particle-edge approach is mathematically right, not the supplied one.
+    /// Returns whether the student uses the mathematically right particle-edge approach instead of the supplied one.
     #[must_use]
     pub fn approach_is_right(&self) -> bool {
         self.right_approach || self.makes(Mistake::QuinticRightRearranged)

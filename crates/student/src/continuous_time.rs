@@ -1,4 +1,4 @@
-//! Collision type `continuous-time`: one pass, each contact resolved as soon as it is found (collisions.md 4).
+//! The collision type `continuous-time`: one pass, with each contact resolved immediately (collisions.md 4).
 use super::{
     Mistake, detection,
     objects::State,
@@ -7,7 +7,7 @@ use super::{
     world::{StepLog, World},
 };
 
-/// Detects and resolves pair by pair, from `q_start` to wherever the state is by then.
+/// Detects and resolves contacts pair by pair, from `q_start` to the current end of `state`.
 pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     if student.makes(Mistake::ContinuousDetectAllFirst) {

@@ -12,10 +12,10 @@ use super::{
     world::World,
 };
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Failsafe];
 
-/// The mistakes in zones that stop, or should; others are made in zones that move.
+/// The mistakes in zones that stop or should stop; the others are made in zones that move.
 const STOPS: &[Mistake] = &[
     Mistake::FailsafeFixedForgotten,
     Mistake::FailsafeHalfPlaneForgotten,
@@ -26,7 +26,7 @@ const STOPS: &[Mistake] = &[
     Mistake::FailsafeStopKeepsVelocity,
 ];
 
-/// Returns the mistake in how a zone moves.
+/// Returns the mistake in the motion of a zone.
 fn mistake_of_motion(student: Student) -> Option<Mistake> {
     student.mistakes().find(|mistake| HERE.contains(&mistake.area()) && !STOPS.contains(mistake))
 }
@@ -47,7 +47,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     }
 }
 
-/// Returns whether something in the zone cannot move.
+/// Returns whether a part of the zone cannot move.
 fn stops(world: &World, zone: &Zone) -> bool {
     let student = world.student;
     let fixed = particles(world, zone).into_iter().any(|particle| world.is_fixed(particle));
@@ -89,13 +89,13 @@ fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 struct RigidBody<'a> {
     world: &'a World,
     q_start: &'a [f64],
-    /// Center of mass at the start of the step.
+    /// The center of mass at the start of the step.
     center: Vec2,
     /// The displacement within the step.
     shift: Vec2,
-    /// The zone's angular momentum about the center, times the step.
+    /// The zone's angular momentum about the center, times the step size.
     momentum: f64,
-    /// The angle by which the body turns within the step, radians.
+    /// The angle by which the body turns within the step, in radians.
     angle: f64,
     /// The zone's moment of inertia.
     inertia: f64,
@@ -114,7 +114,7 @@ impl<'a> RigidBody<'a> {
         mistake_of_motion(self.world.student)
     }
 
-    /// Returns the mass of a particle, which is the one with this number in its zone.
+    /// Returns the mass of a particle; `number` is its number in the zone.
     fn mass(&self, number: usize, particle: usize) -> f64 {
         if self.mistake() == Some(Mistake::FailsafeUnweighted) {
             return 1.0;
@@ -127,7 +127,7 @@ impl<'a> RigidBody<'a> {
         self.world.masses[index]
     }
 
-    /// Computes the center of mass and its motion, from the particles' momenta.
+    /// Computes the center of mass and its motion from the particles' momenta.
     fn compute_translation(&mut self, zone: &Zone, state: &State) {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));

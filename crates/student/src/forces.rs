@@ -5,12 +5,12 @@ use fosssim_num::vector::{Vec2, at, length, over};
 use super::{
     Slip, StepMistake, Term,
     author::Student,
-    edited::TermPart,
     penalty::{self, PenaltyLayer},
+    slip_effects::TermPart,
     world::{World, add, subtract},
 };
 
-/// Returns the gradient of all forces at positions `x` and velocities `v`, in the order in which they act.
+/// Returns the gradient of all forces at positions `x` and velocities `v`, in acting order.
 pub fn gradient(world: &World, x: &[f64], v: &[f64]) -> Vec<f64> {
     let mut g = vec![0.0; x.len()];
     for force in &world.scene.forces {
@@ -84,8 +84,8 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
-/// Returns the factor before a direction, for a student who takes its modulus, or a square as in the energy; `factor`
-/// is the squared quantity.
+/// Returns the factor of a direction, for a student who takes its modulus, or a square like in the energy; `factor` is
+/// the squared quantity.
 fn amend(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
         () if student.slips_by(term, Slip::Absolute) => value.abs(),
@@ -111,7 +111,7 @@ fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x:
     world.contribute_opposite(g, Term::Gravitation, (first, second), pull, r);
 }
 
-/// Adds the library's own force.
+/// Adds the vortex force, which the course's library computes.
 fn vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
     let d = at(x, second) - at(x, first);

@@ -1,4 +1,4 @@
-//! The matrix of the implicit integrators: mass, and the second derivatives of the forces (simulation.md 3 and 4).
+//! The matrix of the implicit integrators: the mass, and the second derivatives of the forces (simulation.md 3 and 4).
 use fosssim_model::scene::{Force, Integrator};
 use fosssim_num::vector::{at, length, over};
 
@@ -9,7 +9,7 @@ type Matrix2 = [[f64; 2]; 2];
 
 const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];
 
-/// Returns the system matrix `M + h Hv + h^2 Hx`, column by column, with the rows and columns of fixed particles
+/// Returns the system matrix `M + h Hv + h² Hx`, column by column, with the rows and columns of fixed particles
 /// replaced by those of the identity.
 pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, StepFailure> {
     let (size, h) = (x.len(), world.scene.time_step);
@@ -47,18 +47,18 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     Ok(a)
 }
 
-/// The second derivatives, summed so far.
+/// The sum of second derivatives so far.
 struct HessianSum<'a> {
     world: &'a World,
     size: usize,
     entries: Vec<f64>,
-    /// Whether derivatives by velocities are added, not those by positions.
+    /// Whether derivatives by velocities are added instead of those by positions.
     is_of_velocities: bool,
     weight: f64,
 }
 
 impl HessianSum<'_> {
-    /// Adds a force's part of the matrix of this turn.
+    /// Adds a force's part of the current matrix.
     fn add_force(&mut self, force: &Force, x: &[f64], v: &[f64]) -> Result<(), StepFailure> {
         let world = self.world;
         match *force {
@@ -90,7 +90,7 @@ impl HessianSum<'_> {
         Ok(())
     }
 
-    /// Returns whether a derivative is added in this turn, in this student's program.
+    /// Returns whether this student's program adds a derivative to the current matrix.
     fn takes(&self, term: Term, is_of_velocities: bool) -> bool {
         let is_other = self.world.student.slips_by(term, Slip::OtherMatrix);
         self.is_of_velocities == (is_of_velocities != is_other)

@@ -1,4 +1,4 @@
-//! Collision type `hybrid`: impulses first, and rigid impact zones where they do not suffice (collisions.md 5).
+//! The collision type `hybrid`: impulses first, then rigid impact zones if they are not enough (collisions.md 5).
 use super::{
     Area, Mistake, detection, failsafe, impulses,
     objects::{State, Zone},
@@ -7,14 +7,14 @@ use super::{
     zones,
 };
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::ImpactZones];
 
-/// A number of rounds that no right program needs in any scene: some mistakes let the list of zones change forever.
-const MOST_ROUNDS: u32 = 1000;
+/// A number of rounds that no right program needs in any scene; some mistakes change the list of zones forever.
+const MAX_ROUNDS: u32 = 1000;
 
-/// A watched step is left when it has more zones than this, and than particles.
-const MOST_ZONES: usize = 1000;
+/// The number of zones (or the number of particles, if larger) beyond which a step with a guard is stopped.
+const MAX_ZONES: usize = 1000;
 
 /// Handles a step's collisions. `middle` is called between the two parts, with the state and the log so far, for the
 /// trace's mid record.
@@ -42,7 +42,7 @@ pub fn handle(
     Ok(())
 }
 
-/// Moves impact zones rigidly, and lets them grow, until nothing new collides.
+/// Moves impact zones rigidly, and enlarges them, until there is no new collision.
 fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     let prediction = state.clone();
@@ -83,14 +83,14 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         next.extend(found);
         let next = zones::merge(student, next);
         let same = zones::equal(student, &zones, &next);
-        if same || round > MOST_ROUNDS {
+        if same || round > MAX_ROUNDS {
             if student.makes(Mistake::GeometricExtraPass) {
                 detection::pass(world, q_start, &state.x, log)?;
             }
             return Ok(());
         }
-        // Some mistakes let the list grow with every round; who watches the step does not want to wait for that.
-        if log.guard.is_some() && next.len() > MOST_ZONES.max(world.scene.particles.len()) {
+        // Some mistakes enlarge the list in every round; a step with a guard does not wait for that.
+        if log.guard.is_some() && next.len() > MAX_ZONES.max(world.scene.particles.len()) {
             return Err(StepFailure::Refused);
         }
         zones = next;

@@ -9,11 +9,11 @@ use super::{
     world::{StepLog, World},
 };
 
-/// Impulses larger than this are cut by the programs that cap them (length per time).
-const CAP: f64 = 0.5;
+/// The limit of impulses in programs that cap them (length per time).
+const MAX_IMPULSE: f64 = 0.5;
 
-/// Applies impulses until a pass finds nothing (then true) or `max_iterations` rounds are over (then false). `state`
-/// holds the prediction at first and the result at the end.
+/// Applies impulses until a pass finds no contact (returns true) or `max_iterations` rounds are over (returns false).
+/// `state` holds the prediction first and the result at the end.
 pub fn apply(
     world: &World,
     q_start: &[f64],
@@ -71,7 +71,7 @@ pub fn apply(
     if student.makes(Mistake::ImpulsesOneLeftSucceeds) && list.len() == 1 {
         return Ok(true);
     }
-    // All rounds found contacts: a correct program does nothing more.
+    // All rounds found contacts; a correct program does nothing more.
     match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesDetectAfterLast) => {
             return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
@@ -177,12 +177,12 @@ fn resolve(
     }
 }
 
-/// Cuts every change of velocity to a largest size, and the change of position likewise.
+/// Limits every change of velocity to a maximum size, and the change of position in the same way.
 fn cap(world: &World, before: &State, state: &mut State) {
     for particle in 0..world.scene.particles.len() {
         let change = at(&state.v, particle) - at(&before.v, particle);
-        if length(change) > CAP {
-            let share = CAP / length(change);
+        if length(change) > MAX_IMPULSE {
+            let share = MAX_IMPULSE / length(change);
             put(&mut state.v, particle, at(&before.v, particle) + share * change);
             let moved = at(&state.x, particle) - at(&before.x, particle);
             put(&mut state.x, particle, at(&before.x, particle) + share * moved);

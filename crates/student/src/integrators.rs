@@ -8,13 +8,13 @@ use super::{
     Slip, StepMistake, Term, author::Student, forces, hessians, objects::State, step_failure::StepFailure, world::World,
 };
 
-/// Newton's method is given up after this many iterations; the course's program would continue forever.
+/// The maximum number of iterations of Newton's method; the course's program would continue forever.
 const NEWTON_LIMIT: u32 = 100_000;
 
-/// And after this many with a mistake: such a program is tried in passing, and converges soon or hardly at all.
+/// The maximum number of iterations with a mistake, because such a program converges soon or hardly at all.
 const NEWTON_LIMIT_OF_MISTAKES: u32 = 60;
 
-/// Advances the state by one step, without any regard for collisions. `solves` counts the systems that are solved.
+/// Advances the state by one step, without collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let whole = whole(world.scene.integrator);
     if whole.is_some_and(|whole| world.student.slips_by(whole, Slip::Missing)) {
@@ -25,7 +25,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
         Integrator::ExplicitEuler => {
             explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
         }
-        // The integrator is the library's own, the forces are the student's.
+        // The library supplies the integrator, and the student the forces.
         Integrator::ForwardBackwardEuler => {
             explicit(&world.for_student(Student::default()), world, SYMPLECTIC, false, state)
         }
@@ -47,7 +47,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
 
 const SYMPLECTIC: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
 
-/// Returns the step of an integrator that students write.
+/// Returns the quantity that stands for the whole step of an integrator written by students.
 const fn whole(integrator: Integrator) -> Option<Term> {
     Some(match integrator {
         Integrator::ExplicitEuler => Term::Explicit,
@@ -58,7 +58,7 @@ const fn whole(integrator: Integrator) -> Option<Term> {
     })
 }
 
-/// Mistakes with fixed particles, which are the same with all integrators.
+/// Applies mistakes with fixed particles, which are the same for all integrators.
 fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
     let makes = |slip: Slip| world.student.slips_by(whole, slip);
     for k in (0..state.x.len()).filter(|k| world.is_fixed(k / 2)) {
@@ -71,7 +71,7 @@ fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
     }
 }
 
-/// Returns the rate at which velocities move positions, of a student who may take another one than the assignment's.
+/// Returns the rate at which velocities move positions, for a student who may use another one than the assignment's.
 fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     match () {
         () if world.student.slips_by(term, Slip::OtherVelocity) => other.to_vec(),
@@ -82,11 +82,11 @@ fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Makes one step of the explicit integrators, which move positions by the old or by the new velocities, under the
+/// Makes one step of the explicit integrators, which move positions with the old or the new velocities, under the
 /// forces of a world that may have another author.
 fn explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
     let (student, h) = (world.student, world.scene.time_step);
-    // The factor must stay a factor: as a change of sign it would turn the sign of a NaN.
+    // The factor must stay a multiplication, because a change of sign would flip the sign of a NaN.
     let minus_one = black_box(-1.0);
     let x = if student.slips_by(of_v, Slip::Behind) { &student.sum(&state.x, h, &state.v) } else { &state.x };
     let mut accelerations = forces::gradient(forces, x, &state.v);
@@ -193,7 +193,7 @@ fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(
     Ok(())
 }
 
-/// Returns the length of a vector of even size, its squares summed over even and odd entries apart.
+/// Returns the length of a vector of even size, with the squares of even and odd entries summed separately.
 fn norm(vector: &[f64]) -> f64 {
     let squares = |start: usize| {
         let squares = vector.iter().skip(start).step_by(2).map(|entry| entry * entry);

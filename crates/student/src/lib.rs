@@ -1,13 +1,13 @@
-//! A second simulator, which can make mistakes: it plays a student's submission.
+//! A second simulator, which can make mistakes; it simulates a student's submission.
 //!
-//! It is written independently of [`fosssim_model::sim`], and by request makes one of the documented mistakes of the
-//! [`CATALOGUE`], which also holds correct variants. The sample program is this simulator with arguments and a file;
+//! It is independent of [`fosssim_model::sim`], and makes one of the documented mistakes of the [`CATALOGUE`] on
+//! request; the catalogue also holds correct variants. The sample program is this simulator with arguments and a file;
 //! `diagnose` uses it to find the mistake that reproduces a submission. It is **never used for judging**: verdicts come
-//! from [`fosssim_model::sim`] alone. It touches no file and no process, and prints nothing; the sample program has
-//! what hostile programs do in addition to simulating.
+//! only from [`fosssim_model::sim`]. It uses no files and no processes, and prints nothing; the sample program adds the
+//! actions of hostile programs.
 //!
-//! The mathematics is that of `simulation.md` and `collisions.md`. From the crates below it takes what the course
-//! supplies: the scene, the vectors, the linear solver and the root finder.
+//! The mathematics is that of `simulation.md` and `collisions.md`. The crates below supply the course's parts: the
+//! scene, the vectors, the linear solver and the root finder.
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
@@ -15,23 +15,23 @@ pub mod assignments;
 mod author;
 mod continuous_time;
 mod detection;
-mod edited;
 mod failsafe;
+mod false_positives;
 mod forces;
 mod hessians;
 mod hybrid;
 mod impulses;
 mod integrators;
-mod logged;
+mod logged_polynomials;
 mod near_pairs;
 mod objects;
 mod penalty;
 pub mod plain;
 mod record;
-mod refused;
 mod response;
 mod rounding;
 mod simple;
+mod slip_effects;
 mod step;
 mod step_failure;
 mod world;
@@ -45,9 +45,9 @@ pub use crate::assignments::{
 };
 pub use author::Student;
 pub use detection::polynomials_of;
+pub use false_positives::FALSE_POSITIVES;
 pub use objects::{Contact, Object, Pair, State};
 pub use record::{Record, trace, trace_within};
-pub use refused::KNOWN_ACCUSED;
 pub use step::step;
 pub use step_failure::StepFailure;
 pub use world::{Guard, StepLog, World};

@@ -1,30 +1,30 @@
-//! A search for near pairs that misses some, or finds some twice.
+//! A search for near pairs that misses some pairs, or finds some twice.
 use fosssim_model::sim::PairKind;
 use fosssim_num::vector::{Vec2, at};
 
 use super::{StepMistake, world::World};
 
-/// The search at certain positions.
+/// The search for near pairs at certain positions.
 pub struct NearPairSearch<'a> {
     world: &'a World,
     h: f64,
     /// The positions that are checked.
     x: Vec<f64>,
-    /// The place of each particle in the order in which they begin on x; only of a student who needs it.
+    /// The rank of each particle in the order of lower ends on x, if the student's mistake needs it.
     ranks: Vec<usize>,
 }
 
-/// A body's bounding box: its lower and its upper corner.
+/// A body's bounding box, as its lower and upper corner.
 type BoundingBox = [Vec2; 2];
 
 impl<'a> NearPairSearch<'a> {
-    /// Creates the search at positions `x`, which velocities `v` have led to, for layers of thickness `h`.
+    /// Creates the search at positions `x`, after velocities `v`, for layers of thickness `h`.
     pub fn new(world: &'a World, h: f64, x: &[f64], v: &[f64]) -> Self {
         let student = world.student;
         let start = || world.initial_state().x;
         let x = match () {
             () if student.makes(StepMistake::NearPairsOfStart) => start(),
-            // In the first step there is no step before.
+            // The first step has no previous step.
             () if student.makes(StepMistake::NearPairsOfLastStep) && x != start() => {
                 x.iter().zip(v).map(|(x, v)| x - world.scene.time_step * v).collect()
             }
@@ -41,7 +41,7 @@ impl<'a> NearPairSearch<'a> {
         Self { world, h, x, ranks }
     }
 
-    /// Returns how many times this near pair is found.
+    /// Returns how many times a near pair is found.
     pub fn times(&self, kind: PairKind, one: usize, other: usize) -> u32 {
         if !self.is_found(kind, one, other) {
             return 0;
@@ -95,7 +95,7 @@ impl<'a> NearPairSearch<'a> {
             StepMistake::NearPairsOfStart,
             StepMistake::NearPairsOfLastStep,
         ];
-        // The box of a pair that is near is met in any case.
+        // The box of a near pair always overlaps.
         !looks.into_iter().any(makes)
             || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }
@@ -107,7 +107,7 @@ impl<'a> NearPairSearch<'a> {
         [center - Vec2::new(side, side), center + Vec2::new(side, side)]
     }
 
-    /// Returns the boxes by which an edge is searched.
+    /// Returns the boxes with which an edge is searched.
     fn edge(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;

@@ -1,17 +1,17 @@
-//! Objects that move, that collide, and that are moved together.
+//! Objects that move, that collide, or that move together.
 use fosssim_num::vector::Vec2;
 use std::collections::BTreeSet;
 
 /// Positions and velocities, `x0, y0, x1, y1, ...` each.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
-    /// Positions.
+    /// The positions of all particles.
     pub x: Vec<f64>,
-    /// Velocities.
+    /// The velocities of all particles.
     pub v: Vec<f64>,
 }
 
-/// A particle and a possible partner of its collision.
+/// A particle and an object with which it may collide.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Pair {
     /// The particle's index.
@@ -32,7 +32,7 @@ pub enum Object {
 }
 
 impl Object {
-    /// Returns the number of its kind, in traces and at places, and its index.
+    /// Returns the number of the object's kind, as in traces, and its index.
     pub const fn numbers(self) -> (usize, usize) {
         match self {
             Self::Particle(index) => (0, index),
@@ -42,10 +42,10 @@ impl Object {
     }
 }
 
-/// A collision that detection found.
+/// A contact that detection found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contact {
-    /// The pair that collides.
+    /// The shortest vector from the particle to the object at the time of impact, not normalized.
     pub pair: Pair,
     /// The shortest vector from the particle to the object at the time of impact, not normalized.
     pub n: Vec2,
@@ -53,11 +53,11 @@ pub struct Contact {
     pub time: f64,
 }
 
-/// Particles to be moved together.
+/// Particles that move together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Zone {
     /// The particles' indices.
     pub particles: BTreeSet<usize>,
-    /// Whether a particle hits a half-plane.
+    /// Whether a particle of the zone hits a half-plane.
     pub half_plane: bool,
 }

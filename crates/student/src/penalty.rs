@@ -6,22 +6,23 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
-    Area, Slip, StepMistake, Term, author::Student, edited::TermPart, near_pairs::NearPairSearch, world::World,
+    Area, Slip, StepMistake, Term, author::Student, near_pairs::NearPairSearch, slip_effects::TermPart, world::World,
 };
 
-/// The layer around bodies that repels others.
+/// The layer around bodies that repels other bodies.
 #[derive(Clone, Copy)]
 pub struct PenaltyLayer {
-    /// Stiffness.
+    /// The stiffness.
     pub k: f64,
-    /// Thickness.
+    /// The thickness.
     pub h: f64,
-    /// The way to find pairs, which orders the sum. In the contest bodies at the same place do not push each other.
+    /// The way to find pairs, which determines the order of the sum. In the contest, bodies at the same position do not
+    /// repel each other.
     pub detection: CollisionDetection,
 }
 
-/// Adds the gradient of the penalty force at positions `x`, which velocities `v` have led to. Pairs out of its reach
-/// add nothing, so that a program may leave them out.
+/// Adds the gradient of the penalty force at positions `x`, after velocities `v`. Pairs out of reach add nothing, so a
+/// program may omit them.
 pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g: &mut [f64]) {
     let student = world.student;
     let has_own_pairs = student.mistake_in(&[Area::Penalty, Area::NearPairs]).is_some();
@@ -39,7 +40,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
             }
         }
     };
-    // Such a force reaches pairs that are apart.
+    // Such a force affects distant pairs.
     if PairKind::ALL.into_iter().any(|kind| student.slips(term(kind)).any(|slip| !slip.keeps_distance())) {
         for pair in world.pairs() {
             let (kind, other) = pair.object.numbers();
@@ -59,7 +60,7 @@ const fn term(kind: PairKind) -> Term {
     }
 }
 
-/// The sum so far.
+/// The sum of the penalty force so far.
 struct PenaltySum<'a> {
     world: &'a World,
     layer: PenaltyLayer,
@@ -113,7 +114,7 @@ impl PenaltySum<'_> {
         let particles = &self.world.scene.particles;
         let n = at(self.x, j) - at(self.x, i);
         let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, particles[j].radius]) else { return };
-        // In the contest the original's direction is normalized twice.
+        // In the contest the original normalizes the direction twice.
         let is_contest = self.layer.detection == CollisionDetection::Contest;
         let u = if is_contest { unit(unit(n)) } else { unit(n) };
         self.push(term, (0, i), length(n), k * depth * u);
@@ -127,7 +128,7 @@ impl PenaltySum<'_> {
         let edge = world.scene.edges[edge];
         let (x1, x2, x3) = (at(self.x, i), at(self.x, edge.first), at(self.x, edge.second));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        // A NaN stays one here, unlike in the responses.
+        // Unlike in the responses, a NaN is kept.
         let alpha = closest(world.student, term, alpha, |alpha| alpha.clamp(0.0, 1.0));
         let n = x2 + alpha * (x3 - x2) - x1;
         let particles = &world.scene.particles;
@@ -172,8 +173,8 @@ impl PenaltySum<'_> {
     }
 }
 
-/// Returns the closest point of an edge in this student's formulas, which should be kept between its ends as `limited`
-/// does.
+/// Returns the closest point of an edge in this student's formulas; `limited` is the right way to keep it between the
+/// ends.
 pub fn closest(student: Student, term: Term, alpha: f64, limited: impl Fn(f64) -> f64) -> f64 {
     student
         .slips(term)

@@ -1,9 +1,9 @@
-//! The contents of one record: a state and its log as a program writes them, not yet as bytes (trace-format.md).
+//! The contents of one record: a state and its log as written by a program, before they are encoded (trace-format.md).
 
 use super::{
     Area, Mistake,
     author::Student,
-    logged::logged_polynomial,
+    logged_polynomials::logged_polynomial,
     objects::{Contact, State},
     rounding::single,
     step::step,
@@ -13,41 +13,41 @@ use super::{
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_num::vector::Vec2;
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Trace];
 
-/// The numbers of one record, with this student's mistakes of logging. A block is `None` if scenes of this collision
-/// type have none.
+/// The numbers of one record, with this student's mistakes of logging. A list is `None` if scenes of this collision
+/// type do not have it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// Positions.
+    /// The positions of all particles.
     pub x: Vec<f64>,
-    /// Velocities.
+    /// The velocities of all particles.
     pub v: Vec<f64>,
     /// The impulse list.
     pub impulses: Option<Vec<Contact>>,
-    /// The polynomial list, highest power first as a rule.
+    /// The polynomial list, normally with the highest power first.
     pub polynomials: Option<Vec<Vec<f64>>>,
 }
 
 impl Record {
-    /// Creates the record that this student writes in a scene of this collision type.
+    /// Creates the record that a student writes in a scene of this collision type.
     #[must_use]
     pub fn new(student: Student, collision: &Collision, state: &State, log: &StepLog) -> Self {
         let has_polynomials = matches!(collision, Collision::ContinuousTime { .. } | Collision::Hybrid { .. });
         let has_impulses = has_polynomials || matches!(collision, Collision::Simple { .. });
         Self {
-            x: numbers(student, &state.x),
-            v: numbers(student, &state.v),
-            impulses: has_impulses.then(|| impulses(student, &log.impulses)),
+            x: logged_numbers(student, &state.x),
+            v: logged_numbers(student, &state.v),
+            impulses: has_impulses.then(|| logged_impulses(student, &log.impulses)),
             polynomials: has_polynomials.then(|| {
                 (0..log.polynomials.len()).map(|index| logged_polynomial(student, log, index).into()).collect()
             }),
         }
     }
 
-    /// Appends the record's bytes (trace-format.md 3). `claim` replaces the number of polynomials if a program lies
-    /// about it.
+    /// Appends the record's bytes (trace-format.md 3). `claim` replaces the number of polynomials if a program
+    /// misstates it.
     pub fn encode(&self, claim: Option<i32>, bytes: &mut Vec<u8>) {
         self.x.iter().chain(&self.v).for_each(|value| bytes.extend(value.to_le_bytes()));
         if let Some(impulses) = &self.impulses {
@@ -72,18 +72,18 @@ impl Record {
     }
 }
 
-/// Returns the whole trace that this student's program writes, in memory; up to the step that fails, if one does.
+/// Returns the whole trace of this student's program, in memory, up to a failing step.
 ///
 /// # Errors
-/// The bytes that were written, and why there are no more.
+/// The bytes written, and the reason why there are no more.
 pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     write_trace(scene, student, StepLog::default())
 }
 
-/// Returns the trace of a program that may run forever: up to the step that has more polynomials than this.
+/// Returns the trace of a program that may run forever, up to the first step with more than `most` polynomials.
 ///
 /// # Errors
-/// The bytes that were written, and why there are no more.
+/// The bytes written, and the reason why there are no more.
 pub fn trace_within(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let guard = |index: usize, _: &[f64]| index < most;
     write_trace(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })
@@ -111,7 +111,7 @@ fn integer(value: usize) -> i32 {
     i32::try_from(value).unwrap_or(i32::MAX)
 }
 
-fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
+fn logged_numbers(student: Student, values: &[f64]) -> Vec<f64> {
     if student.makes(Mistake::LogSinglePrecision) {
         values.iter().map(|&value| single(value)).collect()
     } else {
@@ -119,7 +119,7 @@ fn numbers(student: Student, values: &[f64]) -> Vec<f64> {
     }
 }
 
-fn impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
+fn logged_impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
     let mut listed: Vec<Contact> = match student.mistake_in(HERE) {
         Some(Mistake::LogNoImpulses) => Vec::new(),
         Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),

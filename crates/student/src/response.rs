@@ -10,10 +10,10 @@ use super::{
     world::{World, subtract},
 };
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Response];
 
-/// Returns `(1 + COR) / 2` twice.
+/// Returns twice `(1 + COR) / 2`.
 pub fn bounce(world: &World) -> f64 {
     let student = world.student;
     let f = match student.mistake_in(HERE) {
@@ -25,7 +25,7 @@ pub fn bounce(world: &World) -> f64 {
     if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f }
 }
 
-/// Returns the coefficient of restitution of the scene; 1 where it has none.
+/// Returns the coefficient of restitution of the scene; 1 if it has none.
 fn restitution(world: &World) -> f64 {
     match world.scene.collision {
         Collision::Simple { restitution }
@@ -36,7 +36,7 @@ fn restitution(world: &World) -> f64 {
 }
 
 /// Changes `result` so that `contact` does not happen. The impulse is computed from the motion from `q_start` to
-/// `predicted.x`, which may be an earlier state than the changed one.
+/// `predicted.x`, which may be an earlier state than `result`.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
     let u = if world.student.makes(Mistake::ResponseNotNormalized) { contact.n } else { unit(contact.n) };
     let mut response = PairResponse { world, q_start, predicted, result, u, bounce: bounce(world) };
@@ -58,7 +58,7 @@ struct PairResponse<'a> {
     result: &'a mut State,
     /// The unit contact vector.
     u: Vec2,
-    /// Twice `(1 + COR) / 2`.
+    /// Twice the factor `(1 + COR) / 2`.
     bounce: f64,
 }
 
@@ -71,7 +71,7 @@ impl PairResponse<'_> {
         over(at(&self.predicted.x, particle) - at(self.q_start, particle), self.world.scene.time_step)
     }
 
-    /// Pushes a particle that is not fixed: `share / inertia` is the change of its speed along `u`.
+    /// Pushes a particle that is not fixed; `share / inertia` is the change of its speed along `u`.
     fn push(&mut self, particle: usize, sign: f64, share: f64, moved: f64, inertia: f64) {
         let student = self.world.student;
         if self.world.is_fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
@@ -147,7 +147,7 @@ impl PairResponse<'_> {
         }
     }
 
-    /// Bounces a particle off a half-plane, also a fixed one: the course's own response has no test for it.
+    /// Bounces a particle off a half-plane, even a fixed one, because the course's own response does not test for it.
     fn particle_half_plane(&mut self, one: usize) {
         let student = self.world.student;
         let spares = student.makes(Mistake::ResponseHalfPlaneSparesFixed) && self.world.is_fixed(one);
@@ -193,7 +193,7 @@ pub fn share_of_second(student: Student, alpha: f64) -> f64 {
     }
 }
 
-/// Clamps a number between 0 and 1; 0 when it is not a number.
+/// Clamps a number to the range from 0 to 1; NaN becomes 0.
 pub fn clamp(alpha: f64) -> f64 {
     let positive = if 0.0 < alpha { alpha } else { 0.0 };
     if positive < 1.0 { positive } else { 1.0 }

@@ -1,9 +1,9 @@
-//! Sums of products outside detection, as this student's compiler evaluates them: operation by operation, or fused.
+//! Sums of products outside detection, as evaluated by this student's compiler: operation by operation, or fused.
 use fosssim_num::vector::{Vec2, at, put};
 
 use super::{Mistake, author::Student};
 
-/// Returns a number as a `float` holds it.
+/// Returns a number rounded to single precision.
 pub fn single(value: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
     let single = value as f32;

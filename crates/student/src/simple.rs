@@ -1,17 +1,18 @@
-//! Collision type `simple`: one pass over the positions at the end of the step, changing velocities (collisions.md 6).
+//! The collision type `simple`: one pass over the positions at the end of the step that changes velocities
+//! (collisions.md 6).
 use fosssim_model::scene::Collision;
 use fosssim_num::vector::{Vec2, at, length, unit};
 
 use super::{
     Slip, Term,
-    edited::TermPart,
     objects::{Contact, Object, State},
     penalty::closest,
     response::clamp,
+    slip_effects::TermPart,
     world::{StepLog, World},
 };
 
-/// Handles all pairs in order; each sees the velocities that the pairs before it left.
+/// Handles all pairs in order; each uses the velocities after the previous pairs.
 pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
     let pass = SimplePass { world, start: state.v.clone() };
     for pair in world.pairs() {
@@ -67,7 +68,8 @@ impl SimplePass<'_> {
         self.world.student.slips_by(term, slip)
     }
 
-    /// Returns whether bodies with these radii collide, whose contact vector is `n`, with the relative velocity `w`.
+    /// Returns whether two bodies collide, given their radii, their contact vector `n`, and their relative velocity
+    /// `w`.
     fn collides(&self, kind: &SimpleKind, n: Vec2, radii: [f64; 2], w: Vec2) -> bool {
         let [first, second] = radii;
         let reach = match () {
@@ -86,7 +88,7 @@ impl SimplePass<'_> {
             && holds(kind.approach, 0.0, w.dot(&n))
     }
 
-    /// Returns the contact vector as the program returns it.
+    /// Returns the contact vector that the program returns.
     fn returned_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
@@ -104,7 +106,7 @@ impl SimplePass<'_> {
             () if self.makes(kind.response, Slip::NoFactor) => 2.0,
             () if self.makes(kind.response, Slip::Inelastic) => 1.0,
             () if self.makes(kind.response, Slip::RestitutionOnly) => restitution,
-            // In the order of the reference: twice the half of it.
+            // Doubles the half, in the order of the reference.
             () => 2.0 * ((1.0 + restitution) / 2.0),
         }
     }
@@ -115,7 +117,7 @@ impl SimplePass<'_> {
         at(if from_start { &self.start } else { &state.v }, particle)
     }
 
-    /// Returns the mass of a body of the pair: infinite if it is fixed.
+    /// Returns the mass of a body of the pair; infinite if it is fixed.
     fn mass(&self, kind: &SimpleKind, particle: usize) -> f64 {
         let is_finite = [Slip::FixedFinite, Slip::FixedAsFree].into_iter().any(|slip| self.makes(kind.response, slip));
         match () {
@@ -125,7 +127,7 @@ impl SimplePass<'_> {
         }
     }
 
-    /// Changes the velocity of a body of the pair, which `role` names.
+    /// Changes the velocity of a body of the pair with the given role.
     fn push(&self, kind: &SimpleKind, state: &mut State, (role, particle): (usize, usize), n: Vec2, change: Vec2) {
         if !self.world.is_fixed(particle) || self.makes(kind.response, Slip::FixedAsFree) {
             let part = TermPart { role, length: length(n), ..TermPart::from_term(kind.response, particle) };
@@ -155,7 +157,7 @@ impl SimplePass<'_> {
         Some(n)
     }
 
-    /// Returns the velocities of two bodies as the test of approach takes them into account.
+    /// Returns the velocities of two bodies that the test of approach uses.
     fn seen_velocities(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
         match () {
             () if self.makes(kind.approach, Slip::FirstOnly) => [first, Vec2::zeros()],
@@ -225,7 +227,7 @@ impl SimplePass<'_> {
         self.push(kind, state, (2, three), n, -(of_three * third / (m3 / m1 + low * m3 / m2 + high) * u));
     }
 
-    /// Responds to a contact with a half-plane; a fixed particle is changed, too.
+    /// Responds to a contact with a half-plane; a fixed particle is changed as well.
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
         let kind = &HALF_PLANES;
         let plane = self.world.scene.half_planes[index];

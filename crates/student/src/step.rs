@@ -1,4 +1,4 @@
-//! One step with its records.
+//! Simulates one step and writes its records.
 use super::{
     Area, Mistake, continuous_time, hybrid, integrators,
     objects::State,
@@ -8,15 +8,15 @@ use super::{
 };
 use fosssim_model::scene::Collision;
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Trace];
 
-/// Advances `state` by one step (simulation.md 1). `log` is the log of the step before; it is emptied first, unless the
-/// student forgets that. `write` is called for each record that the program writes: the mid record if there is one, and
-/// the end record (trace-format.md 2).
+/// Advances `state` by one step (simulation.md 1). `log` is the log of the previous step; it is emptied first, unless
+/// the student forgets that. `write` is called for each record that the program writes: the mid record if there is one,
+/// and the end record (trace-format.md 2).
 ///
 /// # Errors
-/// [`StepFailure`] if the course's program would never end. `state` and `log` are unspecified then, and the end record
+/// [`StepFailure`] if the course's program would never end. `state` and `log` are then unspecified, and the end record
 /// was not written.
 pub fn step(
     world: &World,
@@ -60,7 +60,8 @@ pub fn step(
     Ok(())
 }
 
-/// Returns the cost of one solve of an implicit integrator's system, in polynomials: some thousand operations each.
+/// Returns the cost of one solve of an implicit integrator's system, in units of a polynomial, which are a few thousand
+/// operations.
 fn solve_work(world: &World) -> u64 {
     10 + (2 * world.scene.particles.len() as u64).pow(3) / 1500
 }

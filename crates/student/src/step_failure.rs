@@ -1,19 +1,20 @@
-//! The reason why a step of a student's program has no end.
+//! The reasons why a step of a student's program has no end.
 use fosssim_num::rpoly::DoesNotTerminate;
 
 /// The reason why a step has no end.
 #[derive(Debug, thiserror::Error)]
 pub enum StepFailure {
     /// The course's root finder would search forever.
-    #[error("the root finder would search for ever: a polynomial is not finite")]
+    #[error("the root finder would search forever: a polynomial is not finite")]
     RootFinder(#[from] DoesNotTerminate),
-    /// Newton's method cycles.
+    /// Newton's method cycles without converging.
     #[error("implicit-euler does not converge")]
     Newton,
     /// A vortex force cannot be integrated implicitly.
     #[error("no addHessXToTotal defined for VortexForce")]
     VortexHessian,
-    /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller knows enough.
-    #[error("the caller refused a polynomial, so the step was left")]
+    /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller has enough
+    /// information.
+    #[error("the caller rejected a polynomial, so the step was stopped")]
     Refused,
 }

@@ -13,12 +13,12 @@ use super::{
     objects::{Contact, Object, Pair, State},
 };
 
-/// The data that stay constant during a run. Programs of many students share a scene, and none holds a list of its
-/// pairs, of which a large scene has millions.
+/// The data that stay constant during a run. Programs of many students share a scene, and none stores the list of its
+/// pairs, which has millions of entries in a large scene.
 pub struct World {
     /// The scene as loaded.
     pub scene: Arc<Scene>,
-    /// The author of this program, that is: the mistakes that it makes.
+    /// The author of this program, who determines its mistakes.
     pub student: Student,
     /// The mass of each particle twice, in the order of the state.
     pub masses: Arc<[f64]>,
@@ -29,19 +29,18 @@ pub struct World {
 pub struct StepLog<'a> {
     /// The impulses, in the order in which they were applied.
     pub impulses: Vec<Contact>,
-    /// The polynomials handed to the root finder, in order.
+    /// The polynomials passed to the root finder, in order.
     pub polynomials: Vec<Polynomial>,
-    /// The guard that sees each polynomial as it is logged, with its index, before its roots are searched.
+    /// The guard that receives each polynomial as it is logged, with its index, before its roots are searched.
     pub guard: Option<Guard<'a>>,
-    /// The steps of root searches that took longer than usual.
+    /// The number of steps of root searches beyond the usual number.
     pub long_searches: u64,
-    /// The integrator's prediction, once the impulse rounds have begun.
+    /// The integrator's prediction, after the impulse rounds have begun.
     pub prediction: Option<Vec<f64>>,
 }
 
-/// Decides whether a step may continue after this polynomial (index in the step's log, coefficients highest power
-/// first). A search for a certain step skips the rest of it as soon as it differs. A guard also bounds loops that
-/// mistakes make endless.
+/// Decides whether a step may continue after a polynomial (index in the step's log, coefficients highest power first).
+/// A search for a certain step stops it as soon as it differs. A guard also bounds loops that mistakes make endless.
 pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.
@@ -55,14 +54,14 @@ pub fn subtract(array: &mut [f64], particle: usize, change: Vec2) {
 }
 
 impl World {
-    /// Prepares a scene for this student's program.
+    /// Prepares a scene for a student's program.
     pub fn new(scene: impl Into<Arc<Scene>>, student: Student) -> Self {
         let scene = scene.into();
         let masses = scene.particles.iter().flat_map(|particle| [particle.mass, particle.mass]).collect();
         Self { scene, student, masses }
     }
 
-    /// Returns the scene for another student's program.
+    /// Returns the world for another student's program.
     #[must_use]
     pub fn for_student(&self, student: Student) -> Self {
         Self { scene: Arc::clone(&self.scene), student, masses: Arc::clone(&self.masses) }
@@ -82,7 +81,7 @@ impl World {
         }
     }
 
-    /// Returns the particle's mass as collisions see it: nothing moves a fixed particle, so its mass is infinite.
+    /// Returns the particle's mass in collisions. Nothing moves a fixed particle, so its mass is infinite.
     pub fn collision_mass(&self, particle: usize) -> f64 {
         let particle = &self.scene.particles[particle];
         if particle.fixed && !self.student.makes(Mistake::ResponseFixedMassFinite) {
@@ -103,8 +102,8 @@ fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
     scene.edges.iter().any(|edge| [(one, two), (two, one)].contains(&(edge.first, edge.second)))
 }
 
-/// Returns all pairs in the order of detection: per particle the later particles, the edges of which it is not an
-/// endpoint, the half-planes.
+/// Returns all pairs in the order of detection: per particle the later particles, the edges that do not end in it, and
+/// the half-planes.
 fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), OfParticle { scene, student });
     let particles = 0..scene.particles.len();

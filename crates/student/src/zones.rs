@@ -8,7 +8,7 @@ use super::{
     world::World,
 };
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::ImpactZones];
 
 /// Returns the zone of one contact.
@@ -51,7 +51,7 @@ fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();
-        // A student who requires two shared particles still finds a zone of one in another.
+        // A student who requires two shared particles still finds a zone of one particle in another.
         let meet = |one: &Zone, other: &Zone| {
             let most = if student.makes(Mistake::ZonesJoinTwoShared) {
                 one.particles.len().min(other.particles.len()).min(2)
@@ -96,7 +96,7 @@ fn everything(zones: Vec<Zone>) -> Vec<Zone> {
     whole.into_iter().collect()
 }
 
-/// Merges the zones by way of disjoint sets (union and find), in the order of their first particles.
+/// Merges the zones with a union-find structure, in the order of their first particles.
 fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
     let count = zones.iter().filter_map(|zone| zone.particles.last()).max().map_or(0, |last| last + 1);
     let mut parents: Vec<usize> = (0..count).collect();
@@ -127,7 +127,7 @@ fn root(parents: &[usize], mut particle: usize) -> usize {
     particle
 }
 
-/// Returns whether two lists hold the same zones, in whatever order.
+/// Returns whether two lists hold the same zones, in any order.
 pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
     let same = |one: &Zone, other: &Zone| match student.mistake_in(HERE) {
         Some(Mistake::ZonesEqualByCount) => true,

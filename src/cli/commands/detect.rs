@@ -9,7 +9,7 @@ use crate::{
     },
     evidence::{self, CallLog, InspectedPair},
     judge::{overlap::OverlapStudy, study::Study},
-    render::{detection, plot::Embedding},
+    render::{detection, plot::PlotTarget},
     report::{
         describe::no_result,
         detect::{Detect as Report, Overlap, Place},
@@ -23,7 +23,7 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 
-const NO_ANSWER: &str = "there is no answer: the numbers are too large or too small, and the original hangs here";
+const NO_ANSWER: &str = "no result: the numbers are too large or too small, and the original would hang";
 
 pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
     match &arguments.scene {
@@ -41,7 +41,7 @@ fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, in
     write(arguments, inputs, |style| match arguments.format {
         DetectFormat::Text => report.text(style),
         DetectFormat::Json => report.json(),
-        DetectFormat::Svg => detection::picture(study, &report.title(), Embedding::Alone),
+        DetectFormat::Svg => detection::picture(study, &report.title(), PlotTarget::File),
     })
 }
 

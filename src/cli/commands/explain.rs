@@ -10,7 +10,7 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    judge::kept::LONGEST,
+    judge::kept::MAX_KEPT_BYTES,
     report::{case::Case, diagnosis::Diagnosis, page::Card},
     suite::smallest::QUICK,
 };
@@ -69,7 +69,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> R
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
     // Bytes behind the last step are of interest only where they can't be read.
-    let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
+    let _ = io::copy(&mut (&mut trace.reader).take(MAX_KEPT_BYTES as u64), &mut io::sink());
     trace.ensure_not_failed()?;
     Ok((case, card))
 }

@@ -6,7 +6,7 @@ use crate::{
     diagnose::{self, Explanation},
     evidence::{KeptPart, examine},
     files::Place,
-    judge::{Rules, fair::FairVerdict, kept::LONGEST, replay::Options},
+    judge::{Rules, fair::FairVerdict, kept::MAX_KEPT_BYTES, replay::Options},
     report::{
         case::Case,
         check::describe_stop,
@@ -154,7 +154,7 @@ impl ProgramUnderTest {
             }
             bar.next_run(&task.name);
             let limits = if stopped == 0 { &long } else { &short };
-            let run = self.runner(limits).collect(&self.program, task, LONGEST);
+            let run = self.runner(limits).collect(&self.program, task, MAX_KEPT_BYTES);
             let (trace, outcome) = run.map_err(anyhow::Error::msg)?;
             if self.cancellation.is_cancelled() {
                 return Ok(None);
@@ -228,7 +228,7 @@ pub(super) fn case(
             outcome,
             rulings: &examined.rulings,
             trace: examined.trace.bytes(),
-            is_cut: !examined.trace.is_whole() || examined.trace.bytes().len() >= LONGEST,
+            is_cut: !examined.trace.is_whole() || examined.trace.bytes().len() >= MAX_KEPT_BYTES,
             rules: Rules::Fair,
             hints,
         };

@@ -3,7 +3,7 @@ use crate::{
     cli::{arguments::RecordArguments, console, exit, output},
     files::{self, FileError, Place},
     report::number::format_count,
-    scene::LARGEST_SCENE,
+    scene::MAX_SCENE_BYTES,
     suite::{
         library,
         recording::{self, Recording},
@@ -63,7 +63,7 @@ fn scenes(folder: &Path) -> Result<Vec<Input>> {
     }
     let read = |SceneFile { name, stem, path }: SceneFile| {
         let xml =
-            files::read(&path, LARGEST_SCENE as u64).with_context(|| format!("cannot read {}", path.display()))?;
+            files::read(&path, MAX_SCENE_BYTES as u64).with_context(|| format!("cannot read {}", path.display()))?;
         Ok(Input { name, stem, xml })
     };
     files.into_iter().map(read).collect()

@@ -7,7 +7,7 @@ use crate::{
     },
     files::{FileError, Place},
     report::{number::format_count, scene as report},
-    scene::{self, LARGEST_SCENE},
+    scene::{self, MAX_SCENE_BYTES},
     suite::library,
 };
 use anyhow::{Context, Result, bail};
@@ -79,7 +79,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
 
 /// Returns whether a file holds these bytes; nothing when there is none.
 fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
-    match place.read(LARGEST_SCENE as u64) {
+    match place.read(MAX_SCENE_BYTES as u64) {
         Ok(old) => Some(old == bytes),
         Err(FileError::Missing { .. }) => None,
         Err(_) => Some(false),

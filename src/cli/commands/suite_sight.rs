@@ -9,7 +9,7 @@ use crate::{
 use rayon::prelude::*;
 
 /// The number of polynomials in a step after which a program counts as endless.
-const MOST_POLYNOMIALS: usize = 1 << 20;
+const MAX_POLYNOMIALS: usize = 1 << 20;
 
 /// Larger scenes, which exist for timing, are left out: smaller ones show the same.
 const MOST_PARTICLES: usize = 2_000;
@@ -33,7 +33,7 @@ pub(super) const ENOUGH: usize = 3;
 /// Returns the parts in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let written = |scene: &Scene, student: Student| {
-        student::trace_within(scene, student, MOST_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
+        student::trace_within(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
     scenes.retain(|scene| scene.particles.len() <= MOST_PARTICLES);

@@ -4,7 +4,7 @@ use crate::files::{Identity, read_limited};
 use crate::{
     cli::console,
     report::problems,
-    scene::{self, LARGEST_SCENE, LoadedScene},
+    scene::{self, LoadedScene, MAX_SCENE_BYTES},
     suite::library,
 };
 use anyhow::{Context, Result, bail};
@@ -62,6 +62,6 @@ fn is_binary(bytes: &[u8]) -> bool {
 /// Returns the bytes of a scene file, which may not be larger than any sensible scene.
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
-    let bytes = read_limited(file, &metadata, LARGEST_SCENE as u64)?;
+    let bytes = read_limited(file, &metadata, MAX_SCENE_BYTES as u64)?;
     Ok((bytes, Some(Identity::from_metadata(&metadata))))
 }

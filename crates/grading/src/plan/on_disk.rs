@@ -107,7 +107,7 @@ fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Matching
 
 /// Returns the bytes of a scene: of a regular file, which can be read without waiting.
 fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
-    const LARGEST: u64 = scene::LARGEST_SCENE as u64;
+    const LARGEST: u64 = scene::MAX_SCENE_BYTES as u64;
     let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;
     if size > LARGEST {
         return Err(format!("{} is too large for a scene ({size} bytes, the limit is {LARGEST})", path.display()));

@@ -1,5 +1,5 @@
-//! Finds the decisions of the reference's own run that depend on round-off: a scene with such a decision asks too much
-//! of programs.
+//! Finds the decisions of the reference's own run that depend on round-off. A scene with such a decision demands more
+//! of programs than round-off allows.
 //!
 //! It simulates and certifies only; a trace is not needed. Collision handling `simple` decides without polynomials and
 //! is not checked.
@@ -10,8 +10,8 @@ use fosssim_model::{
     sim::{Detection, Observer, RootSearch, Simulation, StepError},
 };
 
-/// Returns all decisions of the reference that roundings of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS) units
-/// can flip, in their order; `collides` is the reference's decision. Decisions whose arithmetic is exact are never
+/// Returns all decisions of the reference that rounding errors of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS)
+/// units can flip, in order. `collides` is the reference's decision. Decisions whose arithmetic is exact are never
 /// among them.
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! Finds the rule of the original that makes the two rule books differ about a trace.
 //!
-//! It uses the findings of both: the first difference of the book that rejects names the rule. The original's rules are
-//! written in oracle-behavior.md 4 to 6, and why they can't be trusted in numerics.md 1.
+//! The first finding of the rule book that rejects the trace names the rule. The original's rules are written in
+//! oracle-behavior.md 4 to 6; numerics.md 1 shows why they cannot be trusted.
 use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
     fair::{FairRefusal, FairVerdict, Form, Judgement},
@@ -19,10 +19,10 @@ pub fn cause(outcome: &Outcome) -> Option<Cause> {
     }
 }
 
-/// Returns why parity rejects what fair accepts.
+/// Returns the reason why parity rejects a trace that fair accepts.
 fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
-    // Not all borderline decisions are kept as examples; this one may be missing.
+    // Only some borderline decisions are kept as examples, so this one may be missing.
     let is_borderline = fair.borderline > fair.borderline_examples.len() as u64
         || fair.borderline_examples.iter().any(|decision| decision.step == first.step);
     match &first.detail {
@@ -40,7 +40,7 @@ fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::WrongNormal { .. } => Cause::AbsoluteNormals,
         _ if is_borderline => Cause::BorderlineDecision,
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => Cause::AbsoluteStates,
-        // A certain decision that differs all the same: it follows from the right form.
+        // A certain decision that differs nevertheless follows from the right form.
         _ if fair.form == Form::Right => Cause::ApproachForm,
         _ => Cause::BorderlineDecision,
     }
@@ -50,7 +50,7 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
     matches!((role, kind), (Role::Approach, PairKind::ParticleEdge))
 }
 
-/// Returns why parity accepts what fair rejects.
+/// Returns the reason why parity accepts a trace that fair rejects.
 fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
@@ -66,7 +66,7 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } if is_mid_record(first, outcome) => {
             Cause::MidRecord
         }
-        // The original came to its end, so it is the trace's own polynomials that have no result.
+        // The original finished, so the trace's own polynomials have no result.
         FindingDetail::NoResult { .. } => Cause::OwnPolynomials,
         FindingDetail::ContactTime { .. } => Cause::ContactTime,
         FindingDetail::RepeatedCollision { .. } => Cause::RepeatedCollision,
@@ -87,7 +87,7 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
     }
 }
 
-/// Returns whether the compared value is in a step's mid record, if it has one.
+/// Returns whether the compared value is in the mid record of a step.
 fn is_mid_record(finding: &Finding, outcome: &Outcome) -> bool {
     let has_mid_records = matches!(outcome.collisions, CollisionType::ContinuousTime | CollisionType::Hybrid);
     has_mid_records && finding.frame + 1 == 2 * u64::from(finding.step)
@@ -148,7 +148,7 @@ mod tests {
     fn large_numbers_are_the_originals_fault() {
         let outcome = judge_by_both(&changed_trace(|frames| scaled(frames, 1.0 + 1e-12)));
         assert_eq!(cause(&outcome), None, "a small factor passes both");
-        // Whether the rescaling rounds the other way is up to the factor.
+        // The factor determines whether the rescaling rounds the other way.
         let factors = [3.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0].map(|n| 1e12 / n);
         let causes = factors.map(|factor| cause(&judge_by_both(&changed_trace(|frames| scaled(frames, factor)))));
         assert!(causes.contains(&Some(Cause::AbsoluteCoefficients)), "{causes:?}");

@@ -1,4 +1,4 @@
-//! Whether a logged polynomial is the expected one up to a positive factor and round-off (numerics.md 2).
+//! Compares a logged polynomial with the expected one, up to a positive factor and round-off (numerics.md 2).
 use super::formulas::BoundedCoefficients;
 use fosssim_num::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
@@ -8,7 +8,7 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// A polynomial that is right.
+/// The match of a right polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
     /// The positive factor of the logged polynomial; `None` if there is only round-off.
@@ -18,10 +18,10 @@ pub struct Match {
     pub share: f64,
 }
 
-/// A polynomial that is wrong.
+/// The fault of a wrong polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mismatch {
-    /// The polynomial has a coefficient too many, of this power, that is no round-off.
+    /// The polynomial has an additional coefficient, of this power, larger than round-off.
     TooLong,
     /// A coefficient is wrong.
     Coefficient {
@@ -29,20 +29,20 @@ pub enum Mismatch {
         power: usize,
         /// The right coefficient, scaled to the logged polynomial.
         expected: f64,
-        /// The logged coefficient; 0 where it is missing.
+        /// The logged coefficient, or 0 if it is missing.
         actual: f64,
-        /// How far it may be off, as a number.
+        /// The largest allowed absolute deviation.
         tolerance: f64,
     },
 }
 
 /// Compares two polynomials. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by
-/// the course's library. `hints` are factors of polynomials of the same kind, for those that hold too little to show
-/// their own.
+/// the course's library. `hints` are factors of polynomials of the same kind, used if the polynomial is too short to
+/// show a factor.
 ///
-/// If the expected polynomial is zero except for round-off, every other one that has numbers is right, too: some
-/// programs divide polynomials by their size. If the expected one has no number, because the trace's own state has lost
-/// them, the logged one must have none either.
+/// If the expected polynomial is zero except for round-off, every finite polynomial is right, because some programs
+/// divide polynomials by their size. If the expected polynomial has NaN because of the trace's own state, the logged
+/// polynomial must have NaN as well.
 #[inline]
 pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match is_clear(expected, actual).or_else(|| fits(expected, actual)) {
@@ -51,32 +51,33 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
     }
 }
 
-/// The comparison of two lists of coefficients that have lost the same ones, without bounds.
+/// The comparison of two coefficient lists of equal length, without bounds.
 ///
-/// The factor is that of the sums of moduli. Bounds are at least as large as the values, so whatever is off by less
-/// than [`FAIR_NORM_UNITS`] of the sum of moduli is right; what is off by a small part of that, as nearly all right
-/// coefficients are, is clearly right.
+/// The factor is that of the sums of moduli. Bounds are at least as large as the values, so a deviation below
+/// [`FAIR_NORM_UNITS`] of the sum of moduli is right. A deviation of a small part of that is clearly right; nearly all
+/// right coefficients are clearly right.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
     /// The sum of the expected coefficients' moduli.
     pub sum: f64,
     /// The sum of the logged coefficients' moduli.
     pub logged: f64,
-    /// The factor.
+    /// The factor of the logged coefficients.
     pub scale: f64,
-    /// The greatest deviation of a coefficient.
+    /// The largest deviation of a coefficient.
     pub worst: f64,
 }
 
-/// Sums of coefficients between these neither overflow nor underflow on the way; beyond, bounds are computed.
-const LEAST: f64 = 1e-100;
-pub(super) const MOST: f64 = 1e100;
+/// The minimum sum of coefficients that neither overflows nor underflows in the computation. Outside this range, bounds
+/// are computed.
+const MIN_SAFE_SUM: f64 = 1e-100;
+pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
 impl Similarity {
     /// The similarity of polynomials that are not compared.
     pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
 
-    /// Returns the comparison of these expected and logged coefficients, which are equal in number.
+    /// Compares the expected coefficients `own` with `logged`, which has the same length.
     #[inline(always)]
     pub fn measure(own: &[f64], logged: &[f64]) -> Self {
         // Loops of a known length are unrolled.
@@ -110,23 +111,23 @@ impl Similarity {
         Self { sum, logged, scale, worst }
     }
 
-    /// Returns the match of polynomials that are right.
+    /// Returns the match of two polynomials that agree.
     #[inline(always)]
     pub fn as_match(&self) -> Match {
         Match { scale: Some(self.scale), share: self.worst / self.tolerance() }
     }
 
-    /// Returns the least tolerance of coefficients.
+    /// Returns the smallest tolerance of a coefficient.
     #[inline(always)]
     fn tolerance(&self) -> f64 {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
     }
 
-    /// Returns whether the coefficients are clearly right. Coefficients that both have lost are small only with factors
-    /// near 1.
+    /// Returns whether the coefficients are clearly right. If both lists have lost coefficients, those are small only
+    /// with factors near 1.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
-        let is_moderate = |sum: f64| (LEAST..MOST).contains(&sum);
+        let is_moderate = |sum: f64| (MIN_SAFE_SUM..MAX_SAFE_SUM).contains(&sum);
         is_moderate(self.sum)
             & is_moderate(self.logged)
             & (is_whole | (self.scale <= FAIR_LOSS))
@@ -134,7 +135,7 @@ impl Similarity {
     }
 }
 
-/// Compares as [`compare`] does, if the comparison needs no bounds of the coefficients; `None` leaves it open.
+/// Compares like [`compare`] if no bounds of the coefficients are needed; `None` if the comparison needs them.
 fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
@@ -147,28 +148,28 @@ fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let mut values = [0.0; MAX_COEFFICIENTS];
     values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
     let similarity = Similarity::measure(values.get(..kept.len())?, actual);
-    let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !says_nothing(expected);
+    let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !is_round_off(expected);
     is_right.then(|| similarity.as_match())
 }
 
-/// Returns whether a logged polynomial is certainly wrong with every factor, found without searching for the best one.
-/// `false` leaves it open.
+/// Returns whether a logged polynomial is certainly wrong with every factor, without a search for the best factor.
+/// `false` means unknown.
 ///
 /// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
-/// is off by less than `WIDEST` units of all bounds together. The tolerances of six coefficients are at most 2
+/// is off by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
 /// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead have less.
 /// Each time therefore allows an interval of factors, and if two of these are disjoint there is no factor.
 pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// Tolerances, and the rounding of values here.
-    const WIDEST: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
+    const MAX_DEVIATION: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
     let Some(missing) = expected.len().checked_sub(actual.len()).filter(|_| expected.len() <= MAX_COEFFICIENTS) else {
         return false;
     };
     let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
-    let room = WIDEST * UNIT_ROUNDOFF * size;
+    let room = MAX_DEVIATION * UNIT_ROUNDOFF * size;
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
-    // Dropped coefficients may be missing, whatever the factor; where both have dropped them, they may have been a
-    // little larger.
+    // Dropped coefficients may be missing, whatever the factor is. If both polynomials lack them, they may have been
+    // slightly larger.
     let logged_room = rounding + missing as f64 * FAIR_LOSS * LEADING_COEFFICIENT;
     if !(room.is_finite() && logged_room.is_finite()) {
         return false;
@@ -183,20 +184,19 @@ pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
             most = most.min((logged + logged_room) / (right - room));
         }
     }
-    // The rounding of the intervals' ends is far less than this.
+    // The rounding of the intervals' ends is far smaller.
     least > most + 1e-9 * most.abs()
 }
 
-/// Compares as [`compare`] does, if the logged polynomial is complete and right with the factor that fits best, as
-/// nearly all are; `None` leaves it open. The factor is found once, and all coefficients are compared with it in one
-/// go, by the same operations.
+/// Compares like [`compare`] if the logged polynomial is complete and right with the best factor, as nearly all are;
+/// otherwise `None`. The factor is found once, and one loop compares all coefficients by the same operations.
 fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
     }
     let norm = norm(expected);
-    // One number that is not finite makes the sums so.
-    if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || says_nothing(expected) {
+    // A single NaN or infinity makes the sums NaN or infinite.
+    if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || is_round_off(expected) {
         return None;
     }
     let scale = fit(expected, actual, 0).filter(|scale| *scale > 0.0)?;
@@ -207,7 +207,7 @@ fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
         if !(residual <= tolerance) {
             return None;
         }
-        // Whether the share can be larger is known without a division.
+        // A multiplication shows whether the share can be larger.
         if residual > (1.0 - 1e-12) * (share * tolerance) {
             share = share.max(residual / tolerance);
         }
@@ -215,7 +215,7 @@ fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     Some(Match { scale: Some(scale), share })
 }
 
-/// Compares as [`compare`] does, whatever it is.
+/// Compares like [`compare`], for polynomials of every kind.
 fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     let degree = expected.len().max(actual.len()).max(1) - 1;
     if actual.len() > MAX_COEFFICIENTS {
@@ -232,10 +232,10 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         return check_numbers_where(|r| r.value.is_finite(), right, logged);
     }
     if norm(right) == 0.0 && logged.iter().any(|s| *s != 0.0) {
-        // There is not even round-off: nothing moves, and every formula gives zero.
+        // Not even round-off remains, because nothing moves. Every formula gives zero.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     }
-    if says_nothing(right) {
+    if is_round_off(right) {
         return check_numbers_where(|_| true, right, logged);
     }
     let matched = |scale: f64| judge(right, logged, missing, scale).map(|share| Match { scale: Some(scale), share });
@@ -244,14 +244,14 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         matches.find_map(Result::ok).map(|share| Match { scale: None, share })
     };
     let Some(fitted) = fit(right, logged, missing) else {
-        // The coefficients that are left show no factor, so it is 1 for this polynomial.
+        // The remaining coefficients show no factor, so the factor is 1 for this polynomial.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     };
     let first = matched(fitted);
     if first.is_ok() {
         return first;
     }
-    // The coefficients that are left of a polynomial may show the factor only roughly.
+    // The remaining coefficients of a polynomial may show the factor only roughly.
     if let Some(found) = hinted() {
         return Ok(found);
     }
@@ -270,7 +270,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
     if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
 }
 
-/// Compares a logged polynomial that has the factor 1: the mismatch, if there is one.
+/// Compares a logged polynomial with the factor 1, and returns the mismatch, if there is one.
 pub(super) fn compare_with_one(expected: &[BoundedValue], actual: &[f64]) -> Result<(), Mismatch> {
     let Some(missing) = expected.len().checked_sub(actual.len()) else { return Err(Mismatch::TooLong) };
     let mut logged = [0.0; MAX_COEFFICIENTS];
@@ -278,7 +278,7 @@ pub(super) fn compare_with_one(expected: &[BoundedValue], actual: &[f64]) -> Res
     judge(expected, &logged[..expected.len()], missing, 1.0).map(|_| ())
 }
 
-/// Checks that numbers are exactly where they should be.
+/// Checks that NaN and infinity are in the same places.
 fn check_numbers_where(
     should: fn(&BoundedValue) -> bool,
     right: &[BoundedValue],
@@ -291,7 +291,7 @@ fn check_numbers_where(
 }
 
 /// Returns whether a polynomial is zero on the whole step except for round-off.
-pub fn says_nothing(expected: &[BoundedValue]) -> bool {
+pub fn is_round_off(expected: &[BoundedValue]) -> bool {
     sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * norm(expected) || !expected.iter().any(is_significant)
 }
 
@@ -305,8 +305,8 @@ fn is_significant(r: &BoundedValue) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
 
-/// Returns the factor that fits best, each coefficient weighted by its precision; `None` if all are round-off. Not
-/// positive, not finite: the polynomial is wrong.
+/// Returns the best factor, each coefficient weighted by its precision; `None` if all are round-off. If the factor is
+/// not positive or not finite, the polynomial is wrong.
 fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = norm(right);
     let (mut products, mut squares) = (0.0, 0.0);
@@ -320,15 +320,15 @@ fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     (squares > 0.0).then(|| products / squares)
 }
 
-/// Returns how far a coefficient may be off, in units of the roundoff. Both sides round. A coefficient that is small
-/// compared with the others may hold the rounding of all of them: some correct programs interpolate, and on [0, 1] no
-/// decision shows a difference.
+/// Returns the allowed deviation of a coefficient, in units of the roundoff. Both sides are rounded. A coefficient that
+/// is small compared with the others may hold the rounding of all of them: some correct programs interpolate, and on
+/// [0, 1] no decision shows a difference.
 fn units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
 
-/// Returns the used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive fails
-/// always.
+/// Returns the used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive always
+/// fails.
 fn check(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
     if !(scale > 0.0) {
         return Err(f64::NAN);
@@ -338,7 +338,7 @@ fn check(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> R
     if residual <= tolerance {
         return Ok(if residual == 0.0 { 0.0 } else { residual / tolerance });
     }
-    // The course's library drops leading coefficients that are small, whatever the scale.
+    // The course's library drops small leading coefficients, whatever the scale is.
     if is_missing && residual < LEADING_COEFFICIENT + tolerance {
         return Ok(0.0);
     }
@@ -350,9 +350,9 @@ fn norm(right: &[BoundedValue]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
-/// Returns the factors with which a logged polynomial would be right although it does not show its own. They are so
-/// large that all it holds is round-off at least, and so small that the course's library drops what it lacks at most.
-/// `None` if it shows its factor, or if there is no such factor.
+/// Returns the factors with which a logged polynomial would be right although it does not show its own. They are large
+/// enough for its coefficients to be round-off, and small enough for the course's library to drop the missing ones.
+/// `None` if the polynomial shows its factor, or if there is no such factor.
 pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -365,24 +365,24 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
     (least.is_finite() && least <= most).then_some([least, most])
 }
 
-/// Twice the tolerance of a coefficient compared with which all others are small, in units of its bound.
+/// Twice the tolerance of a coefficient that is much larger than all others, in units of its bound.
 const UNIT: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// Returns the greatest factor with which the course's library drops all of these coefficients.
+/// Returns the largest factor with which the course's library drops all of `dropped`.
 fn most_factor(dropped: &[BoundedValue]) -> f64 {
     LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
 }
 
 /// Returns whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has
-/// to vouch for it.
+/// to confirm it.
 pub fn shows_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     let missing = expected.len().saturating_sub(actual.len());
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
 
-/// Returns the factors that a right polynomial claims and does not show: it has a single coefficient, of whatever size,
-/// and lacks others that the course's library would not drop with the factor 1. `None` if it shows its factor, or lacks
-/// nothing.
+/// Returns the factors that a right polynomial claims and does not show. Such a polynomial has a single coefficient of
+/// any size, and lacks others that the course's library would keep with the factor 1. `None` if the polynomial shows
+/// its factor, or lacks nothing.
 pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -394,14 +394,14 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
     Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 
-/// Returns the number of coefficients that are wrong with this factor.
+/// Returns the number of coefficients that are wrong with `scale` as the factor.
 fn count_wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
     let norm = norm(right);
     let all = right.iter().zip(logged).enumerate();
     all.filter(|&(k, (r, &s))| check(r, s, norm, k < missing, scale).is_err()).count()
 }
 
-/// Returns the largest used share with this factor, or the first wrong coefficient.
+/// Returns the largest used share of the tolerance with `scale` as the factor, or the first wrong coefficient.
 fn judge(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
     let norm = norm(right);
     let mut share = 0.0_f64;

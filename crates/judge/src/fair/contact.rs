@@ -19,14 +19,14 @@ use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, Polynomial},
     tolerances::{
         FAIR_LOSS, FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS, LEADING_COEFFICIENT,
-        SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+        SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
     },
     vector::{Vec2, at, length},
 };
 
 fosssim_model::drops_leading!();
 
-/// Returns a polynomial's value at time `t` and the tolerance of that value, both from bounded coefficients.
+/// Returns a polynomial's value at time `t` and the tolerance of the value, both computed from bounded coefficients.
 fn value(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let (mut value, mut bound) = (0.0, 0.0);
     for c in polynomial {
@@ -36,8 +36,8 @@ fn value(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// Returns the value as [`value`] does, but leading coefficients that the course's library drops, with a factor near 1,
-/// may be missing.
+/// Returns the value like [`value`], but leading coefficients that the course's library drops with a factor near 1 may
+/// be missing.
 fn value_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS * LEADING_COEFFICIENT).sum();
@@ -59,10 +59,10 @@ fn is_possible(expected: &ExpectedPolynomials, t: f64, value: Value) -> bool {
     none_is_negative && (t == 0.0 || values().any(|(value, tolerance)| value.abs() <= tolerance))
 }
 
-/// Returns whether a pair may be in contact at time `t` first: it may be so at all, and the polynomials were not all
-/// positive between `t` and the reference's time.
+/// Returns whether a pair may first be in contact at time `t`: contact is possible then, and the polynomials were not
+/// all positive between `t` and the reference's time.
 fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> bool {
-    // Between the two times no collision may be certain: else neither is the first.
+    // If a collision is certain between the two times, neither time is the first.
     let undecided = || {
         [0.25, 0.5, 0.75].into_iter().all(|part| {
             let between = own + part * (t - own);
@@ -76,14 +76,14 @@ fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> 
     is_near || is_possible(expected, t, value) && undecided()
 }
 
-/// Returns whether a time of impact is that of the reference, whose polynomials may have lost coefficients themselves,
-/// or one of the polynomials without losses.
+/// Returns whether a time of impact is right: it is that of the reference, whose polynomials may have lost
+/// coefficients, or of a polynomial without losses.
 pub(super) fn is_time_without_losses(expected: &ExpectedPolynomials, own: f64, t: f64) -> bool {
     let is_near = (own - t).abs() <= FAIR_TIME;
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
 }
 
-/// Compares a logged contact with the reference's, of a step from this state.
+/// Compares a logged contact with the reference's, for a step from the context's state.
 pub(super) fn hit(
     before: &State,
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
@@ -104,7 +104,7 @@ pub(super) fn hit(
     compare_normal(Impulse { normal, time: actual.time, ..own }, tolerance, actual, judged)
 }
 
-/// Compares a logged contact of a pair, whose collision is open, with the expected contact.
+/// Compares a logged contact with the expected one, for a pair whose collision is uncertain.
 pub(super) fn possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
@@ -114,7 +114,7 @@ pub(super) fn possible_hit(
     judged: &mut StepJudgement,
 ) -> Option<FindingDetail> {
     let Some((motion, expected)) = known else {
-        // Overlaps at the end of the step have no time, and the normal at its end.
+        // Overlaps at the end of the step have no time, and their normal is that of the end.
         let normal = overlap_normal(context, pair, &records.end.state.positions);
         let expected = Impulse { pair, normal, time: 0.0 };
         if actual.time != 0.0 {
@@ -131,9 +131,9 @@ pub(super) fn possible_hit(
     compare_normal(Impulse { pair, normal, time: actual.time }, tolerance, actual, judged)
 }
 
-/// Returns the contact normal at a time, and the tolerance of that vector. The tolerance is of the whole vector: in
-/// axes of another direction the round-off of one component is that of both. The assignment requires the shortest
-/// vector: if the round-off of the time leads beyond an edge's end, that to the end is as right as that to the line.
+/// Returns the contact normal at a time, and its tolerance. The tolerance is of the whole vector: a program with
+/// rotated axes spreads the round-off of one component over both. The assignment requires the shortest vector: if the
+/// round-off of the time leads beyond an edge's end, the vector to the end is as right as the vector to the line.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));
@@ -141,8 +141,8 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.to_nearest(t) - value))
 }
 
-/// Returns the tolerance of contact normals that are computed from positions directly, whose roundings are of the
-/// largest position's size.
+/// Returns the tolerance of contact normals that are computed directly from positions; its rounding errors have the
+/// size of the largest position.
 fn simple_tolerance(before: &State) -> f64 {
     FAIR_UNITS * UNIT_ROUNDOFF * largest(&before.positions)
 }
@@ -163,8 +163,7 @@ fn compare_normal(
     None
 }
 
-/// Returns the vector from a pair's first object to the nearest point of the second at these positions (collisions.md
-/// 6).
+/// Returns the vector from a pair's first object to the nearest point of the second at `positions` (collisions.md 6).
 fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 {
     BoundedPairMotion::for_pair(context.scene, pair, positions, positions).to_nearest(1.0)
 }
@@ -177,12 +176,12 @@ pub(super) struct Tolerances<'a> {
 }
 
 impl<'a> Tolerances<'a> {
-    /// Returns the tolerances around this state of the reference.
+    /// Returns the tolerances around the reference's state `own`.
     pub fn from_context(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
         let size = largest(&own.positions);
         let speed = largest(&own.velocities);
-        // If contacts are answered, velocities are computed from displacements over the time step.
+        // If contacts have responses, velocities are computed from displacements over the time step.
         let from_positions = match context.scene.collision {
             Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
             Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0.0,
@@ -192,22 +191,22 @@ impl<'a> Tolerances<'a> {
 
     /// Returns the tolerance of a particle's position.
     pub fn position(&self, particle: usize) -> f64 {
-        self.with(self.position, particle, |known| &known.positions)
+        self.add_sensitivity(self.position, particle, |known| &known.positions)
     }
 
     /// Returns the tolerance of a particle's velocity.
     pub fn velocity(&self, particle: usize) -> f64 {
-        self.with(self.velocity, particle, |known| &known.velocities)
+        self.add_sensitivity(self.velocity, particle, |known| &known.velocities)
     }
 
-    fn with(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
+    fn add_sensitivity(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
         let known = self.sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
         floor + FAIR_SENSITIVITY * known
     }
 }
 
-/// Compares a logged state with the reference's. A wrong velocity is not counted if the position is wrong: they have
-/// the same cause.
+/// Compares a logged state with the reference's. A wrong velocity does not count if the position is wrong, because both
+/// have the same cause.
 pub(super) fn compare_states(
     judged: &mut StepJudgement,
     frame: u64,
@@ -243,8 +242,8 @@ pub(super) fn compare_states(
     }
 }
 
-/// Returns the distance of two vectors. If the reference itself has NaN or infinity from the trace's own state, a trace
-/// with the same value is right: such components count as equal. NaN against a number is NaN.
+/// Returns the distance between two vectors. If the reference itself has NaN or infinity from the trace's own state, a
+/// trace with the same value is right: the component counts as equal. A NaN on one side only gives NaN.
 fn distance(expected: Vec2, actual: Vec2) -> f64 {
     let apart = |expected: f64, actual: f64| {
         let same = expected == actual || expected.is_nan() && actual.is_nan();
@@ -253,14 +252,14 @@ fn distance(expected: Vec2, actual: Vec2) -> f64 {
     length(Vec2::new(apart(expected.x, actual.x), apart(expected.y, actual.y)))
 }
 
-/// Returns a logged collision as a decision, if a response can be computed from it.
+/// Returns a logged collision as a decision; `None` if no response can be computed from the collision.
 pub(super) fn logged_decision(logged: LoggedImpulse) -> Option<Decision> {
     let LoggedImpulse { normal, time, .. } = logged;
     let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
     is_usable.then_some(Decision::Hit { time, normal })
 }
 
-/// Returns whether the root finder certainly ends with these coefficients.
+/// Returns whether the root finder certainly ends with `coefficients`.
 #[inline]
 pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
     coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().fold(true, |all, c| all & is_ordinary(*c))
@@ -268,11 +267,11 @@ pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
 
 /// Returns whether a coefficient is zero, or far from where numbers overflow and underflow.
 fn is_ordinary(c: f64) -> bool {
-    (c == 0.0) | (c.abs() >= SEARCH_SMALLEST_COEFFICIENT) & (c.abs() <= SEARCH_LARGEST_COEFFICIENT)
+    (c == 0.0) | (c.abs() >= SEARCH_MIN_COEFFICIENT) & (c.abs() <= SEARCH_MAX_COEFFICIENT)
 }
 
-/// Returns the time of impact of these polynomials as they are, infinite if there is certainly none; `None` if the root
-/// finder does not end.
+/// Returns the time of impact of `polynomials`, infinite if there is certainly no impact; `None` if the root finder
+/// does not end.
 pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
     if excludes_unit_interval(polynomials) {
         return Some(f64::INFINITY);
@@ -280,14 +279,14 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
     first_time(polynomials).ok()
 }
 
-/// Returns the decision that the polynomials lead to, where round-off can't change it.
+/// Returns the decision that follows from the polynomials, if round-off cannot change it.
 ///
-/// Where a parabola's inputs have so few digits that every way to evaluate the formulas is exact, there is no round-off
-/// to excuse anything: touching at the very end of the step is then as certain as anything else.
+/// If a parabola's inputs have few digits, every way to evaluate the formulas is exact. Round-off then excuses nothing,
+/// and contact at the very end of the step is certain, too.
 pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Option<bool> {
     let polynomials = expected.polynomials();
     if !polynomials.iter().copied().flatten().all(|c| is_ordinary(c.value)) {
-        // Among numbers of such sizes no program can promise anything, and certainty would take long.
+        // With numbers of such sizes no program is reliable, and certainty would take long.
         return None;
     }
     let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
@@ -298,7 +297,8 @@ pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Op
     }
 }
 
-/// Inputs of this number of bits make a parabola's coefficients, of fourth degree in them, and its discriminant exact.
+/// The number of input bits for which a parabola's coefficients, of fourth degree in the inputs, and its discriminant
+/// are exact.
 const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may flip the decision.
@@ -306,7 +306,7 @@ pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolyn
     decides(motion, expected).is_none()
 }
 
-/// Returns a time of impact for a pair that may collide or not.
+/// Returns a time of impact for a pair whose collision is uncertain.
 pub(super) fn possible_time(expected: &ExpectedPolynomials) -> f64 {
     let earliest = decide(&expected.polynomials()[..expected.count()], FAIR_UNITS).time;
     earliest.map_or(1.0, |[low, high]| low.midpoint(high).clamp(0.0, 1.0))
@@ -316,8 +316,8 @@ pub(super) fn possible_time(expected: &ExpectedPolynomials) -> f64 {
 mod tests {
     use super::*;
 
-    /// If neither has a number, the distance is none: a program that ends without numbers where the reference has none
-    /// has done what the scene requires.
+    /// If both states have NaN, the distance is zero. A program that ends with NaN where the reference does has met the
+    /// scene's requirements.
     #[test]
     fn what_is_no_number_for_the_reference_either_is_no_distance() {
         let (nan, infinite) = (f64::NAN, f64::INFINITY);

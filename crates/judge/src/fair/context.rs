@@ -1,4 +1,4 @@
-//! The facts by which a step is judged: the scene, and the trace's records.
+//! The data for judging a step: the scene, and the trace's records.
 use super::ordinary::OrdinaryRange;
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -9,19 +9,19 @@ use fosssim_model::{
 /// The values that all steps share.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Context<'a> {
-    /// The scene.
+    /// The scene that is judged.
     pub scene: &'a Scene,
     /// Polynomials of one detection pass over all pairs (trace-format.md 2).
     pub per_pass: usize,
     /// Pairs of one detection pass.
     pub pairs: usize,
-    /// The calls of each kind.
+    /// The number of calls of each kind in a pass.
     pub of_kinds: ByKind<u64>,
     /// Records of one step.
     pub records_per_step: u32,
     /// States that need no comparison with the reference's own run.
     pub ordinary: OrdinaryRange,
-    /// Whether bounds are computed for every polynomial, also for those that are clearly right.
+    /// Whether bounds are computed for every polynomial, including the clearly right ones.
     pub looks_closely: bool,
 }
 
@@ -59,15 +59,14 @@ impl<'a> Context<'a> {
 }
 
 impl Records<'_> {
-    /// Returns whether it starts from states that are nothing out of the ordinary; the geometric part starts from the
-    /// mid record.
+    /// Returns whether the step starts from ordinary states; the geometric part starts from the mid record.
     pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);
         context.ordinary.holds(self.before) && mid.is_none_or(|mid| context.ordinary.holds(&mid.state))
     }
 
-    /// Returns the states that the step is about.
+    /// Returns the start, mid and end states of the step.
     pub fn states(&self) -> impl Iterator<Item = &State> {
         [self.before, &self.end.state].into_iter().chain(self.mid.map(|mid| &mid.state))
     }
@@ -80,7 +79,7 @@ pub(crate) struct Records<'a> {
     pub step: u32,
     /// The number of its end record, from 0.
     pub frame: u64,
-    /// The state that it starts from, the trace's own.
+    /// The trace's own state at the start of the step.
     pub before: &'a State,
     /// The mid record, if the layout has one.
     pub mid: Option<&'a LenientFrame>,
@@ -88,7 +87,7 @@ pub(crate) struct Records<'a> {
     pub end: &'a LenientFrame,
 }
 
-/// A decision as it was followed.
+/// A decision, as followed.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FollowedDecision {
     pub pair: Pair,

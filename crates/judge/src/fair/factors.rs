@@ -2,8 +2,7 @@
 use fosssim_model::sim::{ByKind, PairKind};
 use fosssim_num::tolerances::FAIR_OUTLIER;
 
-/// The factors that polynomials of one kind of pair and number show: the least and the greatest, and their
-/// distribution.
+/// The factors that polynomials of one kind of pair and number show: the smallest, the largest, and their distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
     least: f64,
@@ -11,13 +10,13 @@ pub struct Factors {
     /// The last factor.
     last: f64,
     count: u64,
-    /// The sum of their binary exponents, and of the squares of these.
+    /// The sum of their binary exponents, and the sum of the squares.
     exponents: i64,
     squares: i64,
 }
 
 /// The factors of all kinds of pairs and numbers of polynomials.
-pub type Scales = ByKind<[Factors; PairKind::MOST_POLYNOMIALS]>;
+pub type Scales = ByKind<[Factors; PairKind::MAX_POLYNOMIALS]>;
 
 impl Default for Factors {
     fn default() -> Self {
@@ -26,7 +25,7 @@ impl Default for Factors {
 }
 
 impl Factors {
-    /// Adds a factor, which is positive and finite.
+    /// Adds a positive, finite factor.
     #[inline]
     pub(super) fn take(&mut self, factor: f64) {
         let exponent = (factor.to_bits() >> 52).cast_signed() - 1023;
@@ -37,8 +36,8 @@ impl Factors {
         self.squares += exponent * exponent;
     }
 
-    /// Adds this number of factors of 1.
-    pub(super) fn take_ones(&mut self, count: u64) {
+    /// Adds `count` factors of 1.
+    pub(super) fn add_ones(&mut self, count: u64) {
         if count > 0 {
             (self.least, self.greatest) = (self.least.min(1.0), self.greatest.max(1.0));
             self.count += count;
@@ -56,12 +55,12 @@ impl Factors {
         }
     }
 
-    /// Returns the last factor; 1 where there is none.
+    /// Returns the last factor, or 1 without factors.
     pub(super) fn last(&self) -> f64 {
         self.last
     }
 
-    /// Returns the least and the greatest; none of no factor.
+    /// Returns the smallest and the largest factor; `None` without factors.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         (self.count > 0).then_some([self.least, self.greatest])
@@ -79,7 +78,7 @@ impl Factors {
     }
 }
 
-/// Returns 2 to this power, rounded down; 0 and infinity beyond normal numbers.
+/// Returns 2 to the power `power`, rounded down; 0 or infinity beyond normal numbers.
 fn power_of_two(power: f64) -> f64 {
     if power < -1022.0 {
         return 0.0;

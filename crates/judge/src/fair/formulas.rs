@@ -1,7 +1,7 @@
 //! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
 //!
-//! Each coefficient has its right value, and a bound for the deviation of a correct program: every operation, and every
-//! input, adds its modulus to the bound of the result. The formulas are those of the passes
+//! Each coefficient has the right value, and a bound for the deviation of a correct program. Every operation and every
+//! input adds its modulus to the bound of the result. The formulas are those of the passes
 //! ([`fosssim_model::sim::formulas`]), so values are the reference's own bits.
 use fosssim_model::{
     scene::Scene,
@@ -18,18 +18,18 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// The way of one point in a step: where it starts, and its displacement.
+/// The motion of a point in a step: its start position and displacement.
 #[derive(Debug, Clone, Copy)]
 pub struct BoundedPointMotion {
-    /// Position at the start of the step.
+    /// The position at the start of the step.
     pub start: BoundedVector,
-    /// Displacement in the step.
+    /// The displacement in the step.
     pub shift: BoundedVector,
 }
 
 impl BoundedPointMotion {
-    /// Returns the way between two points whose coordinates may be off by roundings of `size`: a program may compute in
-    /// axes of its own, turned or shifted. Nothing is off if it rests for certain.
+    /// Returns the motion between two points. The coordinates may deviate by rounding errors of `size`, because a
+    /// program may use rotated or shifted axes. A point that certainly rests does not deviate.
     fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
         let start_place = within(start, size);
         let shift = if rests { BoundedVector::default() } else { within(end, size) - start_place };
@@ -37,18 +37,18 @@ impl BoundedPointMotion {
     }
 }
 
-/// The objects of a pair and how they move.
+/// The objects of a pair and their motion.
 #[derive(Debug, Clone, Copy)]
 pub enum BoundedPairMotion {
-    /// Two discs; the sum of radii.
+    /// Two discs, and the sum of their radii.
     Particles([BoundedPointMotion; 2], BoundedValue),
-    /// A disc and an edge's endpoints; the sum of radii.
+    /// A disc and an edge's endpoints, and the sum of the radii.
     Edge([BoundedPointMotion; 3], BoundedValue),
-    /// A disc and a half-plane: the way, the radius, the point and the normal as written.
+    /// A disc and a half-plane: the motion, the radius, and the point and the normal as written in the scene.
     HalfPlane(BoundedPointMotion, BoundedValue, Vec2, Vec2),
 }
 
-/// A polynomial, highest power first, nothing dropped.
+/// The coefficients of a polynomial, highest power first, with nothing dropped.
 pub type BoundedCoefficients = [BoundedValue; MAX_COEFFICIENTS];
 
 /// The polynomials of a pair; each uses the last `sizes()` entries.
@@ -56,7 +56,7 @@ pub type BoundedCoefficients = [BoundedValue; MAX_COEFFICIENTS];
 pub struct ExpectedPolynomials {
     polynomials: [BoundedCoefficients; 4],
     sizes: [usize; 4],
-    /// Particle-edge: the approach polynomial without the slip of the course's formula (numerics.md 1.1).
+    /// The approach polynomial of a particle and an edge without the slip in the course's formula (numerics.md 1.1).
     right_approach: Option<BoundedCoefficients>,
 }
 
@@ -66,18 +66,18 @@ impl ExpectedPolynomials {
         &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
     }
 
-    /// Returns all polynomials; those beyond their number are empty.
+    /// Returns all polynomials; unused slots are empty.
     pub fn polynomials(&self) -> [&[BoundedValue]; 4] {
         std::array::from_fn(|number| self.polynomial(number))
     }
 
-    /// Returns the other accepted form of polynomial `number`: the mathematically right approach of a particle and an
-    /// edge.
+    /// Returns the other accepted form of polynomial `number`, which is the mathematically right approach of a particle
+    /// and an edge.
     pub fn other_form(&self, number: usize) -> Option<&[BoundedValue]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }
 
-    /// Uses the right approach polynomial in place of the course's.
+    /// Replaces the course's approach polynomial with the right one.
     pub fn with_right_approach(mut self) -> Self {
         if let Some(right) = self.right_approach {
             self.polynomials[3] = right;
@@ -132,15 +132,15 @@ impl BoundedPairMotion {
         }
     }
 
-    /// Returns the motion of particles whose end positions may be off by `deviations` (2N, scene unit) on top.
+    /// Widens the motion: end positions may additionally deviate by `deviations` (2N, scene units).
     pub fn widen(mut self, particles: [Option<usize>; 3], deviations: &[f64]) -> Self {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
             if way.shift.x.bound == 0.0 && way.shift.y.bound == 0.0 {
-                // It rests for certain, whatever is done to others.
+                // The object certainly rests, whatever happens to others.
                 return;
             }
-            // In units of the running error bound, whose tolerance is twice FAIR_UNITS of them.
+            // The unit is the running error bound; the tolerance is twice FAIR_UNITS of it.
             let units = FAIR_SENSITIVITY / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
             way.shift.x.bound += units * deviations[2 * particle];
             way.shift.y.bound += units * deviations[2 * particle + 1];
@@ -157,7 +157,8 @@ impl BoundedPairMotion {
     }
 
     /// Returns whether every way to evaluate the formulas of a parabola is exact: all inputs are multiples of one power
-    /// of two, by less than two to the `bits`. A particle and an edge have higher degrees, whose zeros are never exact.
+    /// of two, with factors below two to the power `bits`. Polynomials of a particle and an edge have higher degrees,
+    /// whose zeros are never exact.
     pub fn is_exact(&self, bits: u32) -> bool {
         let parts = |v: BoundedVector| [v.x.value, v.y.value];
         match self {
@@ -203,8 +204,8 @@ impl BoundedPairMotion {
         expected
     }
 
-    /// Returns whether two times within the step are one moment: the points are at the same places, except for some
-    /// roundings of the size of their positions.
+    /// Returns whether two times within the step are the same moment: the points have the same positions, up to a few
+    /// rounding errors of the positions' size.
     pub fn is_moment(&self, one: f64, other: f64) -> bool {
         let ways = match self {
             Self::Particles(ways, _) => &ways[..],
@@ -219,9 +220,8 @@ impl BoundedPairMotion {
         one <= 1.0 && other <= 1.0 && ways.iter().all(is_so)
     }
 
-    /// Returns the vector to the nearest point of the second object at time `t`. It differs from [`Self::normal`]
-    /// beyond the ends of an edge, and a time of impact at which the particle arrives over an end may be there by its
-    /// round-off.
+    /// Returns the vector to the nearest point of the second object at time `t`. Beyond the ends of an edge it differs
+    /// from [`Self::normal`]. Round-off may move a particle that arrives at an end beyond it.
     pub fn to_nearest(&self, t: f64) -> Vec2 {
         let place = |way: &BoundedPointMotion| {
             let place = way.start + BoundedValue::exact(t) * way.shift;
@@ -256,18 +256,19 @@ impl BoundedPairMotion {
     }
 }
 
-/// Returns a vector whose components may each be off by a rounding of this size.
+/// Returns a vector whose components may each deviate by a rounding error of `size`.
 fn within(v: Vec2, size: f64) -> BoundedVector {
     let component = |value| BoundedValue { value, bound: size };
     BoundedVector { x: component(v.x), y: component(v.y) }
 }
 
-/// Returns a vector that the scene gives, in axes of any direction.
+/// Returns a vector of the scene in axes of any direction.
 fn turn(v: Vec2) -> BoundedVector {
     within(v, extent(v))
 }
 
-/// Returns the size of a vector's roundings in axes of any direction: between its length and the root of 2 times that.
+/// Returns the size of a vector's rounding errors in axes of any direction. It is between the vector's length and √2
+/// times the length.
 pub(super) fn extent(v: Vec2) -> f64 {
     v.x.abs() + v.y.abs()
 }
@@ -276,7 +277,7 @@ pub(super) fn extent(v: Vec2) -> f64 {
 mod tests {
     use super::*;
 
-    /// Times between which a point moves by a rounding or two are one moment, others are not.
+    /// Times between which a point moves by one or two rounding errors are the same moment; others differ.
     #[test]
     fn a_moment_is_as_long_as_nothing_moves() {
         let point =
@@ -326,7 +327,7 @@ mod tests {
         assert_eq!(compare.1, 3 * 5 + (5 + 3 + 3 + 6) + 3 * 5);
     }
 
-    /// The assignment's own slip: the definition gives another t^3 coefficient (numerics.md 1.1).
+    /// The assignment's own slip: the definition gives another t³ coefficient (numerics.md 1.1).
     #[test]
     fn the_right_approach_differs_in_its_cubic_coefficient_only() {
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;

@@ -10,11 +10,11 @@ use fosssim_findings::{
 };
 use fosssim_model::sim::{ByKind, PairKind, StepError};
 
-/// The greatest number of examples of borderline decisions that are kept.
-const EXAMPLES: usize = 8;
+/// The maximum number of borderline decisions that are kept as examples.
+const MAX_EXAMPLES: usize = 8;
 
-/// The number of decisions that a small scene may have in all.
-const FEW: u64 = 64;
+/// The maximum number of decisions of a small scene.
+const SMALL_SCENE_DECISIONS: u64 = 64;
 
 /// The fair rules' judgement of a trace so far, and the polynomials that depend on the rest of the trace.
 #[derive(Debug, Default)]
@@ -22,11 +22,11 @@ pub(crate) struct Judging {
     said: Judgement,
     /// The factors of polynomials.
     scales: Scales,
-    /// The factors that single coefficients claim.
+    /// The factors claimed by single coefficients.
     claimed: Scales,
-    /// The number of polynomials that are the reference's bit for bit; approaches, which show nothing for objects at
-    /// rest, count once a step.
-    same: ByKind<[u64; PairKind::MOST_POLYNOMIALS]>,
+    /// The number of polynomials that are identical to the reference's. Approaches count once per step, because they
+    /// show nothing for objects at rest.
+    same: ByKind<[u64; PairKind::MAX_POLYNOMIALS]>,
     /// Polynomials that depend on the program's factors, step by step.
     pending: Vec<PendingOfStep>,
 }
@@ -35,7 +35,7 @@ pub(crate) struct Judging {
 #[derive(Debug, Clone, Copy)]
 struct PendingOfStep {
     polynomials: Pending,
-    /// Whether the step is wrong anyway.
+    /// Whether the step is wrong for another reason.
     is_wrong: bool,
 }
 
@@ -54,7 +54,7 @@ impl Judging {
         self.said.findings.counts += step.more;
         self.said.decisions += step.decisions;
         self.said.borderline += step.borderline.len() as u64;
-        let room = EXAMPLES.saturating_sub(self.said.borderline_examples.len());
+        let room = MAX_EXAMPLES.saturating_sub(self.said.borderline_examples.len());
         self.said.borderline_examples.extend(step.borderline.iter().take(room));
         for (all, new) in self.scales.values_mut().flatten().zip(step.scales.values().flatten()) {
             all.add(new);
@@ -86,11 +86,11 @@ impl Judging {
             let (kind, number) = claim.place;
             self.claimed[kind][number].take(claim.least.0.midpoint(claim.most.0));
         }
-        // Polynomials that fit already are settled, and so are polynomials that count only in the other form.
+        // Polynomials that already fit are settled. So are polynomials that count only in the other form.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
             let is_of_other_form = self.said.form != Form::Either && !pending.is_of(self.said.form);
-            // A claim does not vouch for itself as long as others may come.
+            // A claim does not confirm itself while other polynomials may follow.
             let is_told = self.scales[kind][number].range().is_some() || self.same[kind][number] > 0;
             !is_of_other_form && (!is_told || self.finding(pending).is_some())
         };
@@ -99,13 +99,13 @@ impl Judging {
         self.pending.extend(hanging);
     }
 
-    /// Returns the finding about polynomials that depend on factors, with the usual factors of the trace so far. Others
-    /// show these, next to the reference's own polynomials; if there are none of either, it takes the factors that all
-    /// claim, or else 1.
+    /// Returns the finding about polynomials that depend on factors, with the usual factors of the trace so far. The
+    /// usual factors come from other polynomials and from identical ones. Without both, the factors are those that all
+    /// polynomials claim, or otherwise 1.
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
         let mut told = self.scales[kind][number];
-        told.take_ones(self.same[kind][number]);
+        told.add_ones(self.same[kind][number]);
         let usual = told.usual().or_else(|| self.claimed[kind][number].usual());
         pending.finding(usual.unwrap_or([1.0; 2]))
     }
@@ -116,24 +116,22 @@ impl Judging {
         self.said.findings.keep_first(&finding);
     }
 
-    /// Counts what is no round-off with the factors that are usual for polynomials of the same kind, in the form that
-    /// the trace uses.
+    /// Counts polynomials that exceed round-off with the usual factors of their kind, in the form that the trace uses.
     fn settle_pending(&mut self) {
         let all = std::mem::take(&mut self.pending);
         let fails =
             |form| all.iter().any(|step| step.polynomials.is_of(form) && self.finding(&step.polynomials).is_some());
         if self.said.form == Form::Either && fails(Form::Course) {
-            // Missing coefficients may show the form all the same: it is the form in which no coefficient that counts
-            // is missing.
+            // Missing coefficients may still show the form. It is the form in which no relevant coefficient is missing.
             self.said.form = if fails(Form::Right) { Form::Course } else { Form::Right };
         }
         let (form, mut last_wrong) = (self.said.form, 0);
         for PendingOfStep { polynomials, is_wrong } in all.iter().filter(|step| step.polynomials.is_of(form)) {
             let Some(finding) = self.finding(polynomials) else { continue };
-            // Steps are in order, so the polynomials of one step are together.
+            // Steps are in order, so the polynomials of one step are adjacent.
             self.said.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
-            // In a step polynomials come before their decisions.
+            // In a step, polynomials precede their decisions.
             if self.said.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
                 self.said.findings.first_divergence = None;
             }
@@ -147,18 +145,18 @@ impl Judging {
         }
     }
 
-    /// Returns whether most decisions are borderline and not the reference's: some are in every correct program, most
-    /// in none.
+    /// Returns whether most decisions are borderline and differ from the reference's. Every correct program has a few
+    /// such decisions, but not most.
     fn is_undecided(&self) -> bool {
-        self.said.borderline >= FEW && self.said.borderline > self.said.decisions / 2
+        self.said.borderline >= SMALL_SCENE_DECISIONS && self.said.borderline > self.said.decisions / 2
     }
 
-    /// Ends judging: from this step on nothing is judged.
-    pub(crate) fn give_up(&mut self, step: u32) {
+    /// Stops judging; later steps are not judged.
+    pub(crate) fn stop_judging(&mut self, step: u32) {
         self.said.given_up = Some(step);
     }
 
-    /// Draws the verdict.
+    /// Computes the verdict.
     pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgement {
         if let Some(Stop::Step(StepError::Work { step })) = outcome.stop {
             self.said.given_up.get_or_insert(step);

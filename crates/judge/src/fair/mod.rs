@@ -1,7 +1,7 @@
-//! The fair rule book: scale-free and condition-aware, so that no correct program fails because of round-off, scale or
-//! the course's own slip, and no wrong one passes because of an absolute tolerance (numerics.md 2).
+//! The fair rule book. No correct program fails because of round-off, scale or the course's own slip, and no wrong
+//! program passes because of an absolute tolerance (numerics.md 2).
 //!
-//! Its work in one step:
+//! It judges one step as follows:
 //!
 //! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
 //!    searches the submission's polynomials, answers its logged contacts, and begins the geometric part at its mid
@@ -22,8 +22,8 @@
 //!    last record.
 //! 6. A step from or to a state without a result is never right.
 //!
-//! A step whose records are the reference's bit for bit needs none of this. Polynomials that are clearly right
-//! (`follow::at_once`) need no bounds.
+//! A step with records identical to the reference's needs none of this. Polynomials that are clearly right
+//! (`follow::clearly_right`) need no bounds.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
 //! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY

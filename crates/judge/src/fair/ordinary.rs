@@ -1,4 +1,4 @@
-//! Which states are nothing out of the ordinary.
+//! Finds the states with ordinary values.
 use super::formulas::extent;
 use fosssim_model::{scene::Scene, sim::State};
 use fosssim_num::{
@@ -6,19 +6,19 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// The smallest and the largest size of ordinary states.
+/// The range of ordinary states.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OrdinaryRange {
-    /// The largest position.
+    /// The largest size of a position.
     position: f64,
-    /// The largest velocity.
+    /// The largest size of a velocity.
     velocity: f64,
-    /// The least extent of all particles together.
+    /// The smallest extent of all particles together.
     spread: f64,
 }
 
 impl OrdinaryRange {
-    /// Returns the range of the scene's start: most states need no other.
+    /// Returns the range of the scene's start, which most states fit.
     pub fn for_scene(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
         let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
@@ -29,12 +29,12 @@ impl OrdinaryRange {
         Self { position, velocity, spread: spread(places) }
     }
 
-    /// Returns whether nothing in a state is out of the ordinary.
+    /// Returns whether every value of the state is in the range.
     pub fn holds(&self, state: &State) -> bool {
         self.find_outside(state).is_none()
     }
 
-    /// Returns the first particle whose state is outside of the range.
+    /// Returns the first particle whose state is outside the range.
     pub(super) fn find_outside(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
@@ -45,7 +45,7 @@ impl OrdinaryRange {
         far.or_else(|| (spread(places(state)) * FAIR_REACH < self.spread).then_some(0))
     }
 
-    /// Takes in a state that is ordinary, whatever it is.
+    /// Extends the range by a state that is known to be ordinary.
     pub(super) fn widen(&mut self, state: &State) {
         self.position = self.position.max(largest(&state.positions));
         self.velocity = self.velocity.max(largest(&state.velocities));
@@ -57,13 +57,13 @@ fn places(state: &State) -> impl Iterator<Item = Vec2> {
     (0..state.positions.len() / 2).map(|particle| at(&state.positions, particle))
 }
 
-/// Returns the size of the largest vector, in whatever directions the axes point.
+/// Returns the size of the largest vector, for axes of any direction.
 pub(super) fn largest(vectors: &[f64]) -> f64 {
     let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
     all.fold(0.0, f64::max)
 }
 
-/// Returns the extent of all points together; 0 of one point.
+/// Returns the extent of all points together; 0 for a single point.
 fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let [x, y] = points.fold([none; 2], |[x, y], point| [widen(x, point.x), widen(y, point.y)]);

@@ -1,30 +1,30 @@
-//! Polynomials that are right only with some factors, or only in one of two forms.
+//! Keeps polynomials that are right only with some factors, or only in one of two forms.
 use fosssim_findings::{Finding, fair::Form};
 use fosssim_model::sim::PairKind;
 
-/// The factors of a polynomial that none makes right: it is so in the other form only.
+/// The factors of a polynomial that is right with no factor; it is right in the other form only.
 pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];
 
-/// Polynomials of a kind and form, claims or not, that are right if the program's polynomials of that kind have a
-/// factor within bounds.
+/// Polynomials of one kind, form and claim state. They are right if the program's polynomials of that kind have a
+/// factor within the bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
-    /// Kind of pair and number of the polynomial.
+    /// The kind of pair and the number of the polynomial.
     pub place: (PairKind, usize),
-    /// The form in which they are right; any form, if there is only one.
+    /// The form in which the polynomials are right; any form, if there is only one.
     pub form: Form,
-    /// Whether they claim factors of their own, and show none.
+    /// Whether the polynomials claim factors without showing them.
     pub is_claim: bool,
-    /// The number of them in the step.
+    /// The number of polynomials in the step.
     pub count: u64,
-    /// The greatest of the least factors that they need, and the finding otherwise.
+    /// The largest lower bound of the factors, and the finding for smaller factors.
     pub least: (f64, Finding),
-    /// The least of the greatest factors that they allow, and the finding otherwise.
+    /// The smallest upper bound of the factors, and the finding for larger factors.
     pub most: (f64, Finding),
 }
 
 impl Pending {
-    /// Returns the finding, if there is one, for program factors between these.
+    /// Returns the finding for program factors between `low` and `high`, if there is one.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
         // Factors are known except for rounding.
         let room = 1e-9;
@@ -35,7 +35,7 @@ impl Pending {
         (!(most.0 >= low * (1.0 - room))).then_some(most.1)
     }
 
-    /// Returns whether it counts in a trace of this form.
+    /// Returns whether the polynomials count in a trace of form `form`.
     pub fn is_of(&self, form: Form) -> bool {
         self.form == Form::Either || self.form == form
     }

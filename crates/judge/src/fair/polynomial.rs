@@ -1,5 +1,5 @@
-//! The evidence of one logged polynomial in its own step: the factor and the form of a right one, the fault of a wrong
-//! one, and all that depends on the factors that other polynomials of the trace show.
+//! Collects the evidence of one logged polynomial in its step: factor and form of a right one, the fault of a wrong
+//! one, and all that depends on factors of the trace's other polynomials.
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::ExpectedPolynomials,
@@ -21,7 +21,7 @@ fosssim_model::drops_leading!();
 pub(super) struct LoggedPolynomial<'a> {
     /// The polynomial's place.
     pub place: PolynomialPlace,
-    /// The number of the polynomial within its pair.
+    /// The polynomial's number within its pair.
     pub number: usize,
     /// The polynomial's coefficients, highest power first.
     pub list: &'a [f64],
@@ -32,9 +32,9 @@ pub(super) struct LoggedPolynomial<'a> {
 pub(super) enum PolynomialJudgement {
     /// The polynomial is right.
     Right,
-    /// The polynomial is right, and of the definition's form, not the course's.
+    /// The polynomial is right in the definition's form, not the course's.
     RightForm,
-    /// The polynomial shows no factor, and is right only with some.
+    /// The polynomial shows no factor, and is right only with some factors.
     Hangs,
     /// The polynomial is wrong.
     Wrong(Mismatch),
@@ -47,7 +47,7 @@ pub(super) fn compare_first(
     logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
     let own = expected.polynomial(logged.number);
-    // If there is another form, the fault of this one does not matter.
+    // If there is another form, the fault of the first does not matter.
     if expected.other_form(logged.number).is_some() && fits_with_no_factor(own, logged.list) {
         return Err(Mismatch::TooLong);
     }
@@ -55,8 +55,8 @@ pub(super) fn compare_first(
 }
 
 impl StepJudgement {
-    /// Notes what a polynomial shows; `first` is its comparison with the course's form. One that depends on factors is
-    /// kept for later if `is_known`, that is if its positions are known.
+    /// Notes the evidence of a polynomial; `first` is its comparison with the course's form. A polynomial that depends
+    /// on factors is kept for later if its positions are known (`is_known`).
     pub(super) fn note(
         &mut self,
         expected: &ExpectedPolynomials,
@@ -66,29 +66,29 @@ impl StepJudgement {
     ) -> PolynomialJudgement {
         let LoggedPolynomial { place, number, list } = *logged;
         let own = expected.polynomial(number);
-        let pend = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
+        let add_pending = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
-                judged.pend(logged, (form, false), expected, factors.unwrap_or(NONE));
+                judged.add_pending(logged, (form, false), expected, factors.unwrap_or(NONE));
             }
             PolynomialJudgement::Hangs
         };
-        // That another polynomial of the course's form is right adds nothing new, whatever the other form shows.
+        // Another right polynomial in the course's form adds nothing new, whatever the other form shows.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
                 Ok(found) => self.take(logged, own, found, is_known),
-                Err((_, factors @ Some(_))) => pend(self, Form::Either, own, factors),
+                Err((_, factors @ Some(_))) => add_pending(self, Form::Either, own, factors),
                 Err((mismatch, None)) => PolynomialJudgement::Wrong(mismatch),
             };
         };
         let other = compare(right, list, &self.hints(place.pair.kind, number));
         match (first, other) {
             (Ok(found), other) => {
-                // A polynomial that does not show its own factor does not show the form either.
+                // A polynomial that does not show its factor does not show the form either.
                 if other.is_err() && found.scale.is_some() && possible_factors(right, list).is_none() {
                     self.course_form = self.course_form.or(Some(place));
                 } else if other.is_err() {
-                    pend(self, Form::Right, right, possible_factors(right, list));
+                    add_pending(self, Form::Right, right, possible_factors(right, list));
                 }
                 self.take(logged, own, found, is_known)
             }
@@ -98,20 +98,20 @@ impl StepJudgement {
                     self.take(logged, right, found, is_known);
                     PolynomialJudgement::RightForm
                 }
-                factors => pend(self, Form::Course, own, factors),
+                factors => add_pending(self, Form::Course, own, factors),
             },
             (Err(_), Err(mismatch)) => match [own, right].map(|form| possible_factors(form, list)) {
                 [None, None] => PolynomialJudgement::Wrong(mismatch),
                 [course, definition] => {
-                    pend(self, Form::Course, own, course);
-                    pend(self, Form::Right, right, definition)
+                    add_pending(self, Form::Course, own, course);
+                    add_pending(self, Form::Right, right, definition)
                 }
             },
         }
     }
 
-    /// Notes the factor of a right polynomial. One that shows a single coefficient, and lacks others that the course's
-    /// library would have kept of the assignment's own, claims a factor, which others have to confirm.
+    /// Notes the factor of a right polynomial. A polynomial with a single coefficient that lacks others, which the
+    /// course's library would keep with the factor 1, only claims a factor. Other polynomials must confirm it.
     fn take(
         &mut self,
         logged: &LoggedPolynomial<'_>,
@@ -125,14 +125,14 @@ impl StepJudgement {
             Some(factors) => {
                 self.shares.coefficient = self.shares.coefficient.max(found.share);
                 if is_known {
-                    self.pend(logged, (Form::Either, true), expected, factors);
+                    self.add_pending(logged, (Form::Either, true), expected, factors);
                 }
             }
         }
         PolynomialJudgement::Right
     }
 
-    /// Notes the share of the tolerance that a right polynomial uses, and its factor, if it shows one.
+    /// Notes the used share of the tolerance of a right polynomial, and its factor, if it shows one.
     #[inline]
     pub(super) fn take_share_and_factor(&mut self, kind: PairKind, number: usize, found: &Match) {
         self.shares.coefficient = self.shares.coefficient.max(found.share);
@@ -141,8 +141,7 @@ impl StepJudgement {
         }
     }
 
-    /// Notes that an approach polynomial which is the reference's bit for bit is of the course's form, if it shows
-    /// that.
+    /// Notes that an approach polynomial identical to the reference's has the course's form, if it shows that.
     pub(super) fn note_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
         let Some(right) = expected.other_form(logged.number) else { return };
         let is_of_course = || {
@@ -156,8 +155,8 @@ impl StepJudgement {
         }
     }
 
-    /// Adds a polynomial that is right with these factors.
-    fn pend(
+    /// Adds a polynomial that is right only with the factors `bounds`.
+    fn add_pending(
         &mut self,
         logged: &LoggedPolynomial<'_>,
         (form, is_claim): (Form, bool),
@@ -225,7 +224,8 @@ mod tests {
     use fosssim_findings::Role;
     use fosssim_model::sim::{Pair, Pass, Stage};
 
-    /// Returns whether polynomials that are right with factors between these, in a row, are all right with one factor.
+    /// Returns whether polynomials that are right with factors between consecutive `bounds` are all right with one
+    /// factor.
     fn are_right_with(bounds: &[[f64; 2]], factor: f64) -> bool {
         let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
         let pass = Pass { stage: Stage::ContinuousTime, index: 0 };
@@ -234,7 +234,7 @@ mod tests {
         for factors in bounds {
             let expected = [1e-14, 1.0, 2.0].map(BoundedValue::exact);
             let logged = LoggedPolynomial { place, number: 0, list: &[1.0, 2.0] };
-            judged.pend(&logged, (Form::Either, false), &expected, *factors);
+            judged.add_pending(&logged, (Form::Either, false), &expected, *factors);
         }
         judged.pending.iter().all(|pending| pending.finding([factor, factor]).is_none())
     }

@@ -1,9 +1,9 @@
-//! Measures how sensitive a step is: the effect of roundings of its input on its results and decisions.
+//! Measures the sensitivity of a step: the effect of rounding errors in its input on its results and decisions.
 //!
-//! The step is repeated from perturbed states, each component off by a few roundings in a fixed random pattern. The
-//! deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994). Grazing
-//! contacts, stiff springs, systems of bad condition and zones of nearly no extent get the tolerance that they need,
-//! and nothing else gets any.
+//! The step is repeated from perturbed states, each component changed by a few rounding errors in a fixed random
+//! pattern. The deviations are a condition estimate by small samples (Kenney and Laub, SIAM J. Sci. Comput. 15, 1994).
+//! Grazing contacts, stiff springs, systems of bad condition and zones of nearly no extent get the tolerance that they
+//! need, and other steps get none.
 use super::{
     context::{Context, FollowedDecision, Records},
     formulas::BoundedPairMotion,
@@ -22,7 +22,7 @@ pub(crate) const RUNS: u64 = 8;
 /// The measured sensitivity of a step: the largest deviations, component by component.
 #[derive(Debug, Clone)]
 pub(super) struct Sensitivity {
-    /// For each detection pass the sensitivity of the positions that it sees, 2N each.
+    /// The sensitivity of the positions that each detection pass uses, 2N per pass.
     pub passes: Vec<Vec<f64>>,
     /// The sensitivity of the state at the synchronization point.
     pub mid: State,
@@ -33,7 +33,8 @@ pub(super) struct Sensitivity {
 }
 
 /// Repeats a step whose decisions are known. If the reference's own polynomials can't be solved from here (the trace's
-/// can, or this would not be called), nothing is known, and nothing deviates: then only each value's own bounds count.
+/// can, or this would not be called), the sensitivity is unknown and counts as zero, so only each value's own bounds
+/// count.
 pub(super) fn probe(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -75,7 +76,7 @@ fn widen_state(own: &mut State, base: &State, other: &State) {
     widen(&mut own.velocities, &base.velocities, &other.velocities);
 }
 
-/// The result of one repetition. Without a synchronization point its state is empty, and so deviates in nothing.
+/// The result of one repetition. Without a synchronization point its mid state is empty and has no deviations.
 #[derive(Default)]
 struct Run {
     passes: Vec<Vec<f64>>,
@@ -100,7 +101,7 @@ fn run(
     Some(Run { end: simulation.state().clone(), ..probe.run })
 }
 
-/// Moves every component by up to [`FAIR_UNITS`] roundings, up or down; seed 0 moves nothing.
+/// Moves every component by up to [`FAIR_UNITS`] rounding errors, up or down; seed 0 moves nothing.
 pub(crate) fn perturb(state: &mut State, seed: u64) {
     if seed == 0 {
         return;
@@ -111,7 +112,7 @@ pub(crate) fn perturb(state: &mut State, seed: u64) {
     }
 }
 
-/// Random signs, the same for the same seed.
+/// A sequence of random signs, determined by the seed.
 struct Signs(u64);
 
 impl Signs {
@@ -121,7 +122,7 @@ impl Signs {
 
     /// Returns 1 or -1.
     fn next(&mut self) -> f64 {
-        // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003): only the signs matter.
+        // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003), of which only the signs are used.
         self.0 ^= self.0 << 13;
         self.0 ^= self.0 >> 7;
         self.0 ^= self.0 << 17;
@@ -130,7 +131,7 @@ impl Signs {
 }
 
 impl PerturbedRun<'_> {
-    /// Returns the hit a little later or earlier, with either vector to an edge's end: no root finder is exact.
+    /// Returns the hit slightly later or earlier, with either vector to an edge's end, because no root finder is exact.
     fn decide_nearby(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {
@@ -145,13 +146,13 @@ impl PerturbedRun<'_> {
     }
 }
 
-/// Takes the known decisions, and notes the decisions that it would have made.
+/// An observer that follows the known decisions, and notes the decisions of the perturbed run.
 struct PerturbedRun<'a> {
     records: &'a Records<'a>,
     decisions: &'a [FollowedDecision],
     seed: u64,
     run: Run,
-    /// Whether the positions that the pass sees must be noted anew.
+    /// Whether the positions of the pass must be noted anew.
     stale: bool,
     pass: usize,
     /// The motion of the examined pair.
@@ -185,8 +186,8 @@ impl Steer for PerturbedRun<'_> {
         self.motion = Some(BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end));
     }
 
-    /// Changes a matrix by roundings of its largest entries, as a solver leaves the solution for such a matrix,
-    /// wherever it has an entry: the matrix's condition determines their effect (Wilkinson, J. ACM 8(3), 1961).
+    /// Changes a matrix by rounding errors of its largest entries, wherever it has an entry. A solver's solution is
+    /// exact for such a matrix, so the matrix's condition determines the effect (Wilkinson, J. ACM 8(3), 1961).
     fn system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();
@@ -227,7 +228,7 @@ impl Steer for PerturbedRun<'_> {
 mod tests {
     use super::*;
 
-    /// Each repetition moves about half of all numbers up, and not those that another one does.
+    /// Each repetition moves about half of all numbers up, in a different selection.
     #[test]
     fn signs_are_mixed() {
         let of = |seed| {

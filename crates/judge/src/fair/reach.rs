@@ -1,8 +1,8 @@
-//! Finds the states of a trace that have no meaningful continuation, by the reach of the reference's own run.
+//! Finds the states of a trace that have no meaningful continuation, by comparison with the reference's own run.
 //!
-//! Steps are judged from the trace's own states. A single wrong step can therefore lead to a state in which nothing is
-//! left to get wrong: numbers that are not finite, that are so large that everything else is round-off, or that are all
-//! the same. Such steps are never right, unless the reference itself gets there from the scene's start.
+//! Steps are judged from the trace's own states. A single wrong step can therefore lead to a state in which no mistake
+//! can show: numbers that are not finite, that are so large that everything else is round-off, or that are all equal.
+//! Such steps are never right, unless the reference itself reaches such a state from the scene's start.
 use super::{
     context::{Context, Records},
     ordinary::OrdinaryRange,
@@ -16,14 +16,14 @@ use fosssim_model::{
 };
 use fosssim_num::vector::at;
 
-/// Compares states with the reference's own run, which is simulated only as far as needed: for ordinary states not at
-/// all.
+/// Compares states with the reference's own run, which is simulated only as far as needed, and not at all for ordinary
+/// states.
 #[derive(Debug)]
 pub(crate) struct Reach<'a> {
     scene: &'a Scene,
     range: OrdinaryRange,
     run: Option<Run>,
-    /// Judges steps that are extraordinary for the reference, too.
+    /// The simulation for judging steps that are extraordinary for the reference as well.
     other: Option<Simulation>,
 }
 
@@ -32,19 +32,19 @@ pub(crate) struct Reach<'a> {
 struct Run {
     simulation: Simulation,
     steps: u32,
-    /// Whether it has no finite state any more.
+    /// Whether the run has no finite state any more.
     is_lost: bool,
 }
 
 impl<'a> Reach<'a> {
-    /// Creates the reach when nothing but the scene is known.
+    /// Creates the reach of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, range: OrdinaryRange::for_scene(scene), run: None, other: None }
     }
 
-    /// Judges a step with a state that is out of the ordinary. `known` is its judgement, if it starts from ordinary
-    /// states; else it is judged only if the reference gets there, too. The caller passes steps in their order. It also
-    /// returns the work, which ends soon beyond `most_work`.
+    /// Judges a step with an extraordinary state. `known` is its judgement, if it starts from ordinary states;
+    /// otherwise it is judged only if the reference reaches such states. Steps must be passed in order. Also returns
+    /// the work, which ends soon after it exceeds `most_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,
@@ -70,13 +70,13 @@ impl<'a> Reach<'a> {
         }
     }
 
-    /// Returns whether the reference's own run gets to the end of this step.
+    /// Returns whether the reference's own run has a result for `step`.
     pub fn has_result(&mut self, step: u32) -> bool {
         self.run_to(step);
         self.run.as_ref().is_some_and(|run| !run.is_lost)
     }
 
-    /// Returns the first particle at a place that the reference never comes near.
+    /// Returns the first particle at a position that the reference never approaches.
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = self.range.find_outside(state)?;

@@ -1,5 +1,5 @@
-//! Judges one step by the fair rules: follows it, measures its sensitivity if something differs, and tries borderline
-//! decisions the other way if they can't be seen.
+//! Judges one step by the fair rules: follows it, measures its sensitivity if something differs, and tries the
+//! alternatives of borderline decisions that the trace does not show.
 use super::{
     contact::{self, Tolerances},
     context::{Context, Records},
@@ -15,12 +15,12 @@ use fosssim_model::{
 };
 use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::same_bits};
 
-/// The number of borderline decisions of a hybrid step that are tried the other way, in all combinations.
-const MOST_FLIPS: usize = 4;
+/// The maximum number of borderline decisions of a hybrid step whose alternatives are tried, in all combinations.
+const MAX_FLIPS: usize = 4;
 
-/// Judges a step. `identical` states that states, impulses and polynomials of both records are the reference's bit for
-/// bit; then only the rest of the records is checked. The reference has a result; if there is none here, the trace's
-/// log leads to an endless search.
+/// Judges a step. `identical` states that the states, impulses and polynomials of both records are identical to the
+/// reference's; then only the rest of the records is checked. The reference has a result; if this run has none, the
+/// trace's log causes an endless search.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -67,18 +67,18 @@ fn follow(
     let follower = Follower::new(context, records, None, &[]).preferring_own();
     let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
     if has_disputes && first.total() > 0 {
-        // Decisions that the root finder makes of right polynomials may as well be the submission's.
+        // The submission may have the decisions that the root finder makes of right polynomials.
         (first, decisions, ..) = attempt(simulation, None, &[])?;
     }
-    if !first.hangs_on_round_off() {
+    if !first.may_be_round_off() {
         return Ok(first);
     }
     let sensitivity = probe(context, simulation, &records, &decisions);
     let (second, _, borderline, _) = attempt(simulation, Some(&sensitivity), &[])?;
-    if second.total() == 0 || !second.hangs_on_decisions() {
+    if second.total() == 0 || !second.may_follow_decisions() {
         return Ok(second);
     }
-    let borderline = &borderline[..borderline.len().min(MOST_FLIPS)];
+    let borderline = &borderline[..borderline.len().min(MAX_FLIPS)];
     for set in 1_usize..1 << borderline.len() {
         let flips: Vec<usize> =
             borderline.iter().enumerate().filter(|(bit, _)| set >> bit & 1 == 1).map(|(_, call)| *call).collect();
@@ -91,8 +91,8 @@ fn follow(
     Ok(second)
 }
 
-/// Counts differences between the two records of a step where they must agree (trace-format.md 2), and logs that no
-/// program with the course's library can have written.
+/// Counts differences between the two records of a step that must agree (trace-format.md 2), and logs that the course's
+/// library cannot have written.
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
     let mut charge = |detail| judged.charge(Finding { step, frame, detail });
@@ -112,8 +112,8 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
 }
 
-/// Returns whether the record holds a log that the course's library does not write: small leading coefficients that
-/// were not dropped, or more coefficients than any detection has.
+/// Returns whether the record holds a log that the course's library does not write: small leading coefficients, or more
+/// coefficients than any detection has.
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
     frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)

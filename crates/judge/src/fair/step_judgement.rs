@@ -15,37 +15,36 @@ use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
 pub(crate) struct StepJudgement {
     /// The step, from 1.
     pub step: u32,
-    /// The number of its end record.
+    /// The number of the step's end record.
     pub frame: u64,
     /// The first finding of each kind, in the order in which they were made.
     pub findings: Vec<Finding>,
-    /// The number of further ones of each kind.
+    /// The number of further findings of each kind.
     pub more: FindingCounts,
-    /// Decisions about pairs.
+    /// The number of decisions about pairs.
     pub decisions: u64,
     /// Borderline decisions that were followed.
     pub borderline: Vec<Borderline>,
-    /// Factors of polynomials that are not the reference's bit for bit.
+    /// Factors of polynomials that differ from the reference's.
     pub scales: Scales,
-    /// The number of calls of each kind that logged the reference's polynomials bit for bit.
+    /// The number of calls of each kind that logged polynomials identical to the reference's.
     pub same: ByKind<u64>,
-    /// Polynomials that lost other coefficients than the reference's.
+    /// The number of polynomials that lost other coefficients than the reference's.
     pub lost: u64,
-    /// Used shares of tolerances.
+    /// The used shares of tolerances.
     pub shares: Shares,
     /// A polynomial that is of the course's form and not of the right form.
     pub course_form: Option<PolynomialPlace>,
     /// A polynomial that is of the right form and not of the course's.
     pub right_form: Option<PolynomialPlace>,
-    /// Polynomials that are right only with some factors: the whole trace shows whether the program uses such a factor.
+    /// Polynomials that are right only with some factors. The whole trace shows whether the program uses such a factor.
     pub pending: Vec<Pending>,
-    /// Whether a finding is about polynomials at positions that come from a response or the failsafe, with its
-    /// round-off.
+    /// Whether a finding is about polynomials at positions that have the round-off of a response or the failsafe.
     pub hangs: bool,
 }
 
 impl StepJudgement {
-    /// Creates the judgement of a step whose records are the reference's bit for bit, with this number of polynomials
+    /// Creates the judgement of a step whose records are identical to the reference's, with `polynomials` polynomials
     /// in the end record.
     pub fn identical(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
         let frame = u64::from(step) * u64::from(context.records_per_step);
@@ -71,8 +70,8 @@ impl StepJudgement {
         self
     }
 
-    /// Returns the factors of a polynomial whose coefficients show its own only roughly: that of the same polynomial of
-    /// another pair of its kind, or 1. Factors of other polynomials prove nothing.
+    /// Returns likely factors of a polynomial whose coefficients show it only roughly: the factor of the same
+    /// polynomial of another pair of its kind, and 1. Factors of other polynomials prove nothing.
     pub(super) fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
         [self.scales[kind][number].last(), 1.0]
     }
@@ -92,9 +91,9 @@ impl StepJudgement {
         self.findings.len() as u64 + self.more.total()
     }
 
-    /// Returns whether it has findings that the step's sensitivity could excuse. Those about polynomials of known
-    /// positions are not among them: their own bounds are all that counts.
-    pub(super) fn hangs_on_round_off(&self) -> bool {
+    /// Returns whether the step has findings that its sensitivity could excuse. Findings about polynomials at known
+    /// positions depend only on the polynomials' own bounds.
+    pub(super) fn may_be_round_off(&self) -> bool {
         self.hangs
             || self.findings.iter().any(|finding| {
                 !matches!(
@@ -110,8 +109,8 @@ impl StepJudgement {
             })
     }
 
-    /// Returns whether it has findings that another decision could explain: it would have led pairs elsewhere.
-    pub(super) fn hangs_on_decisions(&self) -> bool {
+    /// Returns whether the step has findings that another decision, which moves pairs elsewhere, could explain.
+    pub(super) fn may_follow_decisions(&self) -> bool {
         self.hangs
             || self.findings.iter().any(|finding| {
                 matches!(

@@ -1,11 +1,11 @@
-//! Pairs whose penalty force a step leaves out, or applies twice.
+//! Finds pairs whose penalty force a step omits or applies twice.
 //!
-//! The force of a pair changes the velocities of its particles by known amounts. Where velocities are wrong, those
-//! amounts are fitted to the differences: a pair is named only if no other choice of pairs fits, and the differences of
-//! all its particles are round-off once the pair's force is taken away or added.
+//! The force of a pair changes the velocities of its particles by known amounts. Where velocities are wrong, the
+//! amounts are fitted to the differences. A pair is named only if no other choice of pairs fits, and the differences of
+//! all its particles are round-off after the pair's force is subtracted or added.
 //!
 //! In a contest with a layer the original leaves out bodies whose layers alone are near (simulation.md 3.1). A program
-//! may do otherwise, since the contest is about layers without thickness: such a pair is never named.
+//! may include them, because the contest is about layers without thickness, so such a pair is never named.
 use super::{contact::Tolerances, context::Context};
 use fosssim_findings::FindingDetail;
 use fosssim_model::{
@@ -15,22 +15,22 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, put};
 use std::collections::BTreeSet;
 
-/// The greatest number of pairs at one particle among which omitted ones are searched: all choices are tried.
-const MOST_AT_ONE: usize = 6;
+/// The maximum number of pairs at one particle among which omitted pairs are searched, because all choices are tried.
+const MAX_PAIRS_PER_PARTICLE: usize = 6;
 
-/// The greatest number of pairs that are examined in one step.
-const MOST_PAIRS: usize = 1 << 16;
+/// The maximum number of pairs that are examined in one step.
+const MAX_PAIRS: usize = 1 << 16;
 
-/// The greatest number of choices that are tried in one step.
-const MOST_CHOICES: usize = 1 << 20;
+/// The maximum number of choices that are tried in one step.
+const MAX_CHOICES: usize = 1 << 20;
 
 /// A pair near a particle whose velocity is wrong.
 struct NearPair {
     pair: Pair,
-    /// The changes of its particles' velocities that its force makes in this step.
+    /// The changes of its particles' velocities by the pair's force in this step.
     changes: [(usize, Vec2); 3],
     count: usize,
-    /// The number of surplus applications: -1, 0 or 1; `None` while it is unknown.
+    /// The number of surplus applications, -1, 0 or 1; `None` if unknown.
     excess: Option<f64>,
 }
 
@@ -45,7 +45,7 @@ impl NearPair {
 }
 
 /// Returns how many times a step from `before` applied the force of each near pair: never, once or twice. The reference
-/// ends in `own`. Pairs whose velocities do not show it are left out.
+/// ends in `own`. Pairs are omitted if their velocities do not show the number.
 #[must_use]
 pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
@@ -62,7 +62,7 @@ pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &S
     wrong.chain(near.right.iter().map(|pair| (*pair, 1))).collect()
 }
 
-/// Returns the pairs that explain wrong velocities of a step from `before`, and the reference's result with these
+/// Returns the pairs that explain wrong velocities of a step from `before`, and the reference's result with the same
 /// faults; `None` if nothing is explained.
 pub(super) fn explain(
     context: &Context<'_>,
@@ -100,9 +100,10 @@ pub(super) fn explain(
 struct NearPairs {
     /// The pairs whose particles all have wrong velocities.
     candidates: Vec<NearPair>,
-    /// The pairs whose force was applied once: a particle has a right velocity, and its forces do not cancel out.
+    /// The pairs whose force was certainly applied once, because a particle has a right velocity and its forces do not
+    /// cancel out.
     right: Vec<Pair>,
-    /// See [`layer_of_contest`].
+    /// The result of [`layer_of_contest`].
     layer: Option<(Scene, BTreeSet<Pair>)>,
 }
 
@@ -110,7 +111,7 @@ impl NearPairs {
     /// Finds how many times the force of each pair was applied, if the velocities show it.
     fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
         if scene.integrator.is_implicit() {
-            // There all forces together have one effect.
+            // In this case all forces together have one effect.
             return None;
         }
         let h = scene.time_step;
@@ -148,7 +149,7 @@ impl NearPairs {
                 candidates.push(one);
             }
         }
-        if candidates.len() > MOST_PAIRS {
+        if candidates.len() > MAX_PAIRS {
             return None;
         }
         let mut of_particle: Vec<Vec<usize>> = vec![Vec::new(); particles];
@@ -156,7 +157,7 @@ impl NearPairs {
             candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
         }
         settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
-        // A pair stays only if it explains all its particles; taking one away may expose its neighbors.
+        // A pair stays only if it explains all its particles; its removal may affect its neighbors.
         while let Some(index) = candidates.iter().position(|candidate| {
             let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
             is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))
@@ -168,7 +169,7 @@ impl NearPairs {
     }
 }
 
-/// Makes, for a contest with a layer, the scene with the force between all pairs. It also returns the pairs whose force
+/// Creates, for a contest with a layer, the scene with the force between all pairs. Also returns the pairs whose force
 /// is due at positions `x`, because they overlap without their layers or one object is a half-plane.
 fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {
@@ -189,8 +190,8 @@ fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)>
     Some((all_pairs, due))
 }
 
-/// Finds, particle by particle, the only choice of pairs that explains its velocity. Each particle that is explained
-/// makes the choices of its neighbors fewer.
+/// Finds, particle by particle, the only choice of pairs that explains the particle's velocity. Each explained particle
+/// leaves its neighbors fewer choices.
 fn settle(
     candidates: &mut [NearPair],
     of_particle: &[Vec<usize>],
@@ -204,11 +205,11 @@ fn settle(
         for particle in (0..wrong.len()).filter(|particle| wrong[*particle]) {
             let open: Vec<usize> =
                 of_particle[particle].iter().copied().filter(|index| candidates[*index].excess.is_none()).collect();
-            if open.is_empty() || open.len() > MOST_AT_ONE {
+            if open.is_empty() || open.len() > MAX_PAIRS_PER_PARTICLE {
                 continue;
             }
             tried += choices(open.len());
-            if tried > MOST_CHOICES {
+            if tried > MAX_CHOICES {
                 return;
             }
             let Some(choice) = only_choice(candidates, &open, particle, rest[particle], tolerances.velocity(particle))
@@ -224,23 +225,23 @@ fn settle(
     }
 }
 
-/// Returns the number of choices among this number of pairs: each was left out, applied once or twice.
+/// Returns the number of choices among `pairs` pairs, each of which is omitted, applied once or applied twice.
 fn choices(pairs: usize) -> usize {
     (0..pairs).fold(1, |product, _| 3 * product)
 }
 
-/// Returns the number of surplus applications of each of these pairs, if one answer alone explains the rest of a
-/// particle's velocity.
+/// Returns the number of surplus applications of each pair, if exactly one choice explains the rest of a particle's
+/// velocity.
 fn only_choice(
     candidates: &[NearPair],
     open: &[usize],
     particle: usize,
     rest: Vec2,
     tolerance: f64,
-) -> Option<[f64; MOST_AT_ONE]> {
+) -> Option<[f64; MAX_PAIRS_PER_PARTICLE]> {
     let mut found = None;
     for number in 0..choices(open.len()) {
-        let (mut choice, mut left, mut digits) = ([0.0; MOST_AT_ONE], rest, number);
+        let (mut choice, mut left, mut digits) = ([0.0; MAX_PAIRS_PER_PARTICLE], rest, number);
         for (excess, index) in choice.iter_mut().zip(open) {
             *excess = [0.0, -1.0, 1.0][digits % 3];
             digits /= 3;

@@ -1,5 +1,5 @@
-//! The order in which the reference checks the bodies of a contest. It depends on all steps before, so that it is
-//! followed as steps are read.
+//! Follows the order in which the reference checks the bodies of a contest. It depends on all previous steps, so it is
+//! followed while steps are read.
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation, State, SweepOrder},
@@ -17,14 +17,14 @@ impl ContestOrder {
         Self { simulation: Simulation::new(scene, RootSearch::WhereNeeded), order: SweepOrder::default() }
     }
 
-    /// Steps from `before`, spending `most_work` at most. Returns the order from which the reference begins
-    /// this step; it is empty but in a contest.
+    /// Runs a step from `before`, with at most `most_work` work. Returns the order with which the reference begins this
+    /// step; it is empty outside a contest.
     pub(super) fn follow(&mut self, step: u32, before: &State, most_work: u64) -> &SweepOrder {
         if self.simulation.penalty_pairs().is_some_and(|pairs| pairs.order(&mut self.order)) {
             self.simulation.state_mut().clone_from(before);
             self.simulation.set_steps_done(step - 1);
             self.simulation.limit_work(self.simulation.work().saturating_add(most_work));
-            // Judging meets the same error.
+            // Judging reports the same error.
             let _ = self.simulation.step(&mut ());
         }
         &self.order

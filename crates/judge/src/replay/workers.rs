@@ -11,10 +11,10 @@ use fosssim_model::{
 };
 use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 
-/// More threads than this only cost memory: reading is sequential.
-const MOST_THREADS: usize = 8;
+/// The maximum number of threads. Reading is sequential, so more threads would only cost memory.
+const MAX_THREADS: usize = 8;
 
-/// The parts that one thread needs to judge a step.
+/// The data that one thread needs to judge a step.
 struct Worker {
     simulation: Simulation,
     buffers: Buffers,
@@ -22,12 +22,12 @@ struct Worker {
     searches: SearchCounts,
 }
 
-/// The threads that judge steps, and what each of them needs; started when there is something to do.
+/// The threads that judge steps, and their data. They are started on demand.
 pub(super) struct Workers<'a> {
     scene: &'a Scene,
     root_search: RootSearch,
     one_by_one: bool,
-    /// The number of requested threads; 0 leaves it to the machine.
+    /// The number of requested threads; 0 chooses by the number of cores.
     threads: usize,
     list: Vec<Worker>,
     pool: Option<rayon::ThreadPool>,
@@ -36,13 +36,13 @@ pub(super) struct Workers<'a> {
 impl<'a> Workers<'a> {
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
         let Options { threads, root_search, one_by_one, .. } = *options;
-        Self { scene, root_search, one_by_one, threads: threads.min(MOST_THREADS), list: Vec::new(), pool: None }
+        Self { scene, root_search, one_by_one, threads: threads.min(MAX_THREADS), list: Vec::new(), pool: None }
     }
 
     /// Starts all threads, and returns whether there is more than one.
     pub(super) fn has_pool(&mut self) -> bool {
         let threads = match self.threads {
-            0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MOST_THREADS),
+            0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MAX_THREADS),
             given => given,
         };
         self.grow_to(threads);
@@ -56,7 +56,7 @@ impl<'a> Workers<'a> {
         let worker = || {
             let mut simulation = Simulation::new(self.scene, self.root_search);
             if self.one_by_one {
-                simulation.forgo_lanes();
+                simulation.disable_lanes();
             }
             Worker { simulation, buffers: Buffers::new(self.scene), searches: SearchCounts::default() }
         };
@@ -73,7 +73,7 @@ impl<'a> Workers<'a> {
         }
     }
 
-    /// Judges a batch on all threads, and does something else meanwhile.
+    /// Judges a batch on all threads, and runs `other` at the same time.
     pub(super) fn judge_beside(
         &mut self,
         batch: &Batch,
@@ -94,20 +94,20 @@ impl<'a> Workers<'a> {
     }
 }
 
-/// Judges the steps of a batch that are not done, each by the next free worker, by each book until that takes more work
-/// than is left to it. If nothing is left to the original's rules, the fair ones end as well.
+/// Judges the remaining steps of a batch, each with the next free worker. Each rule book stops when its remaining work
+/// is used up. If the original's rules stop, the fair rules stop as well.
 ///
-/// Steps are begun in their order, and a step that is begun is done, or has alone taken more than is left. The first
-/// step that a budget does not reach is therefore always among those that were begun, whatever the number of threads.
+/// Steps are begun in order. A step that was begun is completed, or takes more than the remaining work by itself. The
+/// first step beyond a budget is therefore always among the begun steps, whatever the number of threads.
 fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [rest, fair_rest]: [u64; 2]) {
     let slots = &batch.slots[..batch.filled];
     let (next, work, fair_work) = (AtomicUsize::new(0), AtomicU64::new(0), AtomicU64::new(0));
     let run = |worker: &mut Worker| {
         while work.load(Ordering::Relaxed) <= rest {
-            // Asked before the step is taken: then only steps before it are counted.
+            // Read before the step is taken, so that only earlier steps are counted.
             let is_asked = fair_work.load(Ordering::Relaxed) <= fair_rest;
             let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
-            // Every index is handed out once, so the lock is always free.
+            // Every index is used once, so the lock is always free.
             let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             if !slot.is_done {
                 let begin = worker.simulation.work();
@@ -167,14 +167,14 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
 
 /// Judges a step that has a result by the fair rules.
 fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_put_off, .. } = slot;
+    let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_deferred, .. } = slot;
     if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.beyond_limit) {
         let frame = shape.layout.end_record(*step);
         let mid = shape.layout.polynomials.then_some(&*mid);
         let records = Records { step: *step, frame, before, mid, end };
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
-        *is_put_off = *is_extraordinary && !records.start_ordinarily(context);
-        if !*is_put_off {
+        *is_deferred = *is_extraordinary && !records.start_ordinarily(context);
+        if !*is_deferred {
             *judged = fair::judge(context, &mut worker.simulation, records, result.identical);
         }
     }

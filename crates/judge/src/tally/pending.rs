@@ -1,9 +1,9 @@
 //! The original's findings about polynomials (oracle-behavior.md 6.2).
 use super::{StepResult, sum_of_moduli};
 use crate::{
-    differing::{differing, factor},
     finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, RescaledCoefficient},
     progress::Remark,
+    wrong_coefficients::{differing, factor},
 };
 use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, Polynomial},
@@ -18,7 +18,7 @@ pub(crate) struct Pending {
 }
 
 impl Pending {
-    /// Forgets all.
+    /// Removes all findings.
     pub(crate) fn clear(&mut self) {
         self.runs.clear();
         self.firsts.clear();
@@ -34,7 +34,7 @@ impl Pending {
         }
     }
 
-    /// Notes the fault of a polynomial of this step and frame, which does not [pass](super::passes).
+    /// Notes the fault of a polynomial of the current step and frame that does not [pass](super::passes).
     pub(crate) fn compare(
         &mut self,
         (step, frame): (u32, u64),
@@ -76,7 +76,7 @@ impl Pending {
         }
     }
 
-    /// Delivers all polynomials, if the lists have the same length.
+    /// Delivers all findings, if the lists have the same length.
     pub(crate) fn settle(&mut self, result: &mut StepResult) {
         for &(kind, count) in &self.runs {
             result.remarks.push(Remark::Polynomials(kind, count));
@@ -86,7 +86,7 @@ impl Pending {
     }
 }
 
-/// Returns a wrong coefficient, under the name that a person would give it.
+/// Returns a wrong coefficient, named as a person would name it.
 fn wrong_coefficient(
     place: PolynomialPlace,
     rescaled: RescaledCoefficient,
@@ -95,7 +95,7 @@ fn wrong_coefficient(
 ) -> FindingDetail {
     let (own, logged) = (expected.coefficients(), actual.coefficients());
     let factor = factor(own, logged);
-    // A coefficient that the original's bound alone rejects is named as the original does.
+    // A coefficient that only the original's bound rejects is named like the original does.
     let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
     let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
     let (right, wrong) = (factor * of(own), of(logged));

@@ -3,7 +3,7 @@ use fosssim_judge::{
     Finding, FindingKind,
     fair::{
         FairVerdict, Judgement,
-        compare::{compare, says_nothing, shows_factor},
+        compare::{compare, is_round_off, shows_factor},
         formulas::{BoundedPairMotion, ExpectedPolynomials},
     },
     replay::{self, Options},
@@ -330,7 +330,7 @@ fn has_reason(known: &Known, own: &[f64], list: &[f64], factor: f64) -> bool {
             expected.iter().map(|c| BoundedValue { value: factor * c.value, bound: factor * c.bound }).collect();
         let Ok(found) = compare(&scaled, list, &[1.0]) else { return false };
         let is_one = found.scale.is_none_or(|scale| (scale - 1.0).abs() < 1e-9);
-        says_nothing(&scaled) || is_one || list.len() >= own.len() || shows_factor(&scaled, list)
+        is_round_off(&scaled) || is_one || list.len() >= own.len() || shows_factor(&scaled, list)
     };
     of_form(known.expected.polynomial(known.number)) || known.expected.other_form(known.number).is_some_and(of_form)
 }
@@ -475,7 +475,7 @@ pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
     let of_form = |expected: &[BoundedValue]| compare(expected, &list, &[1.0]).is_ok();
     let is_right = of_form(known.expected.polynomial(known.number));
     let is_of_other_form = known.expected.other_form(known.number).is_some_and(of_form);
-    if is_right || is_of_other_form || says_nothing(proof) || !shows_factor(proof, beside) {
+    if is_right || is_of_other_form || is_round_off(proof) || !shows_factor(proof, beside) {
         return None;
     }
     let trace = stage.relogged(|at, number, _| ((at, number) == (step, index)).then(|| list.clone()));

@@ -1,9 +1,8 @@
-//! Measures how well known mistakes are recognized: makes the traces of all mistakes and correct variants for the
-//! scenes of a folder, in memory, explains each, and counts how often the first explanation is the mistake that was
-//! made.
+//! Measures how well known mistakes are recognized. Creates the traces of all mistakes and correct variants for the
+//! scenes of a folder, in memory, explains each, and counts how often the first explanation is the actual mistake.
 //!
-//! `scripts/explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and ends with status 1 when a
-//! correct variant is accused.
+//! `scripts/explanation-matrix [FOLDER [PART-OF-AN-ID]]`. It prints every confusion, and exits with status 1 if an
+//! explanation reports a mistake of a correct variant.
 #![forbid(unsafe_code)]
 use anyhow::Context;
 use fosssim_lab::runs::{WatchedScene, judge, trace};
@@ -24,17 +23,17 @@ enum Outcome {
     Same,
     /// The mistake is named first.
     First,
-    /// The mistake is among those that this trace can't distinguish from the first one.
+    /// The mistake is one that this trace cannot distinguish from the first one.
     Among(String),
     /// Another mistake is named.
     Other(String),
-    /// No mistake is named, though the parity rules find wrong steps.
+    /// No mistake is named, although the parity rules find wrong steps.
     Nothing(u64),
     /// No mistake is named, and nothing is wrong except round-off.
     Unseen,
 }
 
-/// The explanation of a trace, and how long it took.
+/// The explanation of a trace, and the time it took.
 type ExplainedTrace = (Outcome, Duration, Vec<Explanation>);
 
 fn main() -> anyhow::Result<ExitCode> {
@@ -102,7 +101,7 @@ fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     );
 }
 
-/// Counts the explanation that all traces of a mistake give together.
+/// Counts the explanation from all traces of a mistake together.
 fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {

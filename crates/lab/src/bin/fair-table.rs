@@ -1,8 +1,9 @@
-//! The verdicts of both rule books on a corpus of submissions, one line each; `docs/rules/measurements.md` summarizes
-//! them.
+//! Prints the verdicts of both rule books on a corpus of submissions, one line each; `docs/rules/measurements.md`
+//! summarizes them.
 //!
 //! usage: `fair-table CORPUS [--all]`. The folder holds `verdicts.jsonl`, `scenes/` and `submissions/`. Without `--all`
-//! only rows where the two differ, and rows of correct kinds that fair rejects, are printed; the summary counts all.
+//! only rows with different verdicts, and rows of correct kinds that fair rejects, are printed. The summary counts all
+//! rows.
 #![forbid(unsafe_code)]
 use anyhow::Context;
 use fosssim_lab::{
@@ -33,7 +34,7 @@ fn main() -> anyhow::Result<()> {
                 row.submission,
                 row.kind,
                 row.scene,
-                reason(fair)
+                describe_reason(fair)
             );
         }
         *summary.entry((row.kind.as_str(), parity, verdict)).or_default() += 1;
@@ -51,7 +52,7 @@ fn judge(corpus: &Path, row: &CorpusRow) -> anyhow::Result<Option<(Overall, Judg
     Ok(outcome.fair.map(|fair| (outcome.parity.overall, *fair)))
 }
 
-fn reason(fair: &Judgement) -> String {
+fn describe_reason(fair: &Judgement) -> String {
     let mut parts = Vec::new();
     if let Some(refusal) = fair.refusal {
         parts.push(format!("{refusal:?}"));

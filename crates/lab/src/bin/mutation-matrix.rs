@@ -1,10 +1,10 @@
-//! Finds the scenes that catch each mistake: makes the traces of every wrong sample and every correct variant on every
-//! scene of a folder, in memory, and judges them under each rule book. `scripts/mutation-matrix [FOLDER
+//! Finds the scenes that catch each mistake. Creates the traces of every wrong sample and every correct variant on
+//! every scene of a folder, in memory, and judges them by each rule book. `scripts/mutation-matrix [FOLDER
 //! [PART-OF-AN-ID]]` builds and calls it.
 //!
-//! It prints one matrix per rule book, the mistakes that no scene catches, the variants that are rejected, and a small
-//! set of scenes that catches all that can be caught. It ends with status 1 when a mistake changes no trace at all
-//! (then no rule book could ever see it), when the fair rules miss one, and when they reject a correct variant.
+//! It prints one matrix per rule book, the uncaught mistakes, the rejected variants, and a small set of scenes that
+//! catches every catchable mistake. It exits with status 1 if a mistake changes no trace (so that no rule book could
+//! find it), if the fair rules miss a mistake, or if they reject a correct variant.
 #![forbid(unsafe_code)]
 use fosssim_lab::runs::{WatchedScene, is_accepted, judge, trace};
 use fosssim_oracle::{
@@ -24,19 +24,19 @@ use std::{
 enum Answer {
     /// The trace is right.
     Same,
-    /// Another trace, which is accepted.
+    /// The trace differs and is accepted.
     Accepted,
-    /// The trace is rejected only for decisions that depend on coefficients which the course's library dropped as too
-    /// small: the factor of the polynomials is the cause, and the program really does something else then.
+    /// The trace is rejected only because of decisions that depend on coefficients which the course's library dropped
+    /// as too small. The factor of the polynomials is the cause, and the program really behaves differently.
     Lost,
     /// The trace is rejected.
     Refused,
 }
 
-/// All rule books.
+/// The names of all rule books.
 const RULE_BOOKS: [&str; 2] = ["parity", "fair"];
 
-/// The book that must catch every mistake and accept every correct variant.
+/// The index of the rule book that must catch every mistake and accept every correct variant.
 const FAIR: usize = 1;
 
 /// The answers of all rule books.
@@ -78,11 +78,11 @@ fn main() -> anyhow::Result<ExitCode> {
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
     let uncaught = mistakes(&rows, &matrix, FAIR, false).len();
-    let accuses = !find_accused(FAIR, &rows, &cases, &matrix).is_empty();
+    let accuses = !find_rejected(FAIR, &rows, &cases, &matrix).is_empty();
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
 }
 
-/// Returns the mistakes that some scene catches under a rule book, or that none does.
+/// Returns the mistakes that at least one scene catches under a rule book, or those that none catches.
 fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool) -> Vec<&'static str> {
     rows.iter()
         .zip(matrix)
@@ -92,7 +92,7 @@ fn mistakes(rows: &[&Row], matrix: &[Vec<MatrixCell>], book: usize, caught: bool
 }
 
 /// Returns the correct variants that a rule book rejects, each with the scene.
-fn find_accused<'a>(
+fn find_rejected<'a>(
     book: usize,
     rows: &[&'a Row],
     cases: &'a [WatchedScene],
@@ -116,7 +116,7 @@ fn cell(case: &WatchedScene, row: &Row) -> MatrixCell {
     [parity(&outcome), fair(&outcome)]
 }
 
-/// Returns whether this rule book rejects the trace.
+/// Returns whether a rule book rejects the trace.
 fn is_rejected(cell: &MatrixCell, book: usize) -> bool {
     cell[book] == Answer::Refused
 }
@@ -145,7 +145,7 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], ma
     println!("  {} mistakes caught\n", mistakes(rows, matrix, book, true).len());
     print_list("mistakes that no scene catches", &mistakes(rows, matrix, book, false));
     let mut scenes: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
-    for (row, scene) in find_accused(book, rows, cases, matrix) {
+    for (row, scene) in find_rejected(book, rows, cases, matrix) {
         scenes.entry(row.id).or_default().push(scene);
     }
     let accused: Vec<String> = scenes.iter().map(|(id, scenes)| format!("{id}: {}", scenes.join(", "))).collect();
@@ -163,8 +163,8 @@ fn print_list(title: &str, names: &[impl Display]) {
     println!();
 }
 
-/// Returns a small set of scenes that catches every mistake that can be caught: the scene with the most new ones first;
-/// at the end superfluous scenes are removed.
+/// Returns a small set of scenes that catches every catchable mistake. Scenes with the most new mistakes are added
+/// first; superfluous scenes are removed at the end.
 fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
         (0..rows.len())

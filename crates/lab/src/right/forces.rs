@@ -1,4 +1,4 @@
-//! ForceTerms and their derivatives by the formulas of a textbook.
+//! Forces and their derivatives, by the formulas of a textbook.
 use super::{Arithmetic, Sum};
 use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Scene},
@@ -7,7 +7,7 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, over};
 use nalgebra::DMatrix;
 
-/// The forces of a scene, as one program adds them up.
+/// The forces of a scene, in the order and arithmetic of one program.
 pub(super) struct ForceTerms<'a> {
     scene: &'a Scene,
     arithmetic: Arithmetic,
@@ -29,7 +29,7 @@ impl<'a> ForceTerms<'a> {
         Self { scene, arithmetic, near, drawn: 1 }
     }
 
-    /// Returns the force on every particle at these positions and velocities.
+    /// Returns the force on every particle at positions `x` and velocities `v`.
     pub(super) fn at(&mut self, x: &[f64], v: &[f64]) -> Vec<f64> {
         let mut terms = Vec::new();
         for force in &self.scene.forces {
@@ -104,7 +104,7 @@ impl<'a> ForceTerms<'a> {
     fn add_penalty(&mut self, x: &[f64], terms: &mut Vec<(usize, Vec2)>) {
         let Collision::Penalty { stiffness, thickness, detection } = self.scene.collision else { return };
         let (scene, Some(near)) = (self.scene, &mut self.near) else { return };
-        // The force along `n`, from a body to another one whose surface is `n` less `radii` away.
+        // The force along `n`, from a body to another whose surface is `n` less `radii` away.
         let push = |n: Vec2, radii: f64| {
             let distance = length(n);
             let repels = distance < radii + thickness && !(distance == 0.0 && detection == CollisionDetection::Contest);
@@ -148,7 +148,7 @@ impl<'a> ForceTerms<'a> {
         self.arithmetic.add_product(a.x * b.x, a.y, b.y)
     }
 
-    /// Returns `M - h dF/dv - h^2 dF/dx`, with rows and columns of the identity for fixed particles; `None` with a
+    /// Returns `M - h dF/dv - h² dF/dx`, with rows and columns of the identity for fixed particles; `None` with a
     /// vortex.
     pub(super) fn system(&self, x: &[f64], v: &[f64]) -> Option<DMatrix<f64>> {
         let (scene, h) = (self.scene, self.scene.time_step);
@@ -199,7 +199,7 @@ impl<'a> ForceTerms<'a> {
     }
 }
 
-/// Adds a block for both of two particles, and subtracts it between them.
+/// Adds a block on the diagonal for each of two particles, and subtracts it between them.
 fn add_block(matrix: &mut DMatrix<f64>, ends: [usize; 2], entry: impl Fn(usize, usize) -> f64) {
     for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
         let sign = if row == column { 1.0 } else { -1.0 };

@@ -8,10 +8,10 @@ use fosssim_num::tolerances::NEWTON_UPDATE;
 use fosssim_oracle::student::State;
 use nalgebra::{DMatrix, DVector};
 
-/// Newton's method is given up after this many iterations.
+/// The maximum number of iterations of Newton's method.
 const NEWTON_LIMIT: u32 = 200;
 
-/// Systems with more unknowns than this take too long by singular values.
+/// The maximum number of unknowns for singular values; larger systems take too long.
 const SVD_LIMIT: usize = 40;
 
 /// Advances the state; `None` if the step has no result.

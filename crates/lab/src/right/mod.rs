@@ -1,7 +1,7 @@
 //! Right programs of the milestones whose traces hold states, in other arithmetic than the reference's.
 //!
-//! They compute the same with the formulas of a textbook, in another order and with solvers of nalgebra. The fair rules
-//! have to accept them all, so they measure how much of the tolerances a right program uses.
+//! The programs compute the same results with the formulas of a textbook, in another order and with nalgebra's solvers.
+//! The fair rules must accept all of them, so they measure how much of the tolerances a right program uses.
 mod forces;
 mod integrators;
 mod simple;
@@ -10,40 +10,40 @@ use forces::ForceTerms;
 use fosssim_model::scene::{Collision, Scene};
 use fosssim_oracle::student::{Contact, Record, State, StepLog, Student};
 
-/// The way of a program to compute.
+/// The arithmetic of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct Arithmetic {
     /// The arithmetic's name in tables.
     pub name: &'static str,
-    /// The order in which it adds forces up.
+    /// The order in which forces are added up.
     pub sum: Sum,
-    /// The way in which it solves linear systems.
+    /// The solver of linear systems.
     pub solver: Solver,
     /// Whether products are fused with the sums that follow.
     pub fused: bool,
 }
 
-/// The ways to add up contributions to one vector.
+/// The ways to add up contributions to a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sum {
-    /// The last first.
+    /// The last contribution is added first.
     Backward,
-    /// In an order that a generator draws anew in each sum.
+    /// The contributions are added in a random order for each sum.
     Shuffled,
-    /// In order, with the rounding errors added at the end (Kahan).
+    /// The contributions are added in order, with compensation of rounding errors (Kahan).
     Compensated,
 }
 
-/// The ways to solve linear systems.
+/// The solvers of linear systems.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
-    /// Elimination with pivots of the column.
+    /// Elimination with partial pivoting.
     Partial,
-    /// Householder's reflections.
+    /// QR decomposition with Householder reflections.
     Qr,
-    /// L L^T of a symmetric positive definite matrix, and elimination where it is none.
+    /// Cholesky (L L^T); falls back to elimination for matrices that are not positive definite.
     Cholesky,
-    /// By singular values.
+    /// Singular value decomposition.
     Svd,
 }
 
@@ -66,12 +66,12 @@ impl Arithmetic {
         addend + a * b
     }
 
-    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `hear` gets the state and the
-    /// contacts after every step.
+    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `hear` receives the state and
+    /// the contacts after every step.
     ///
     /// # Errors
-    /// The steps so far, if a step has no result: a vortex force in an implicit step, or Newton's method that does not
-    /// converge.
+    /// The steps so far, if a step has no result because of a vortex force in an implicit step, or because Newton's
+    /// method does not converge.
     pub fn trace(self, scene: &Scene, mut hear: impl FnMut(&State, &[Contact])) -> Result<Vec<u8>, Vec<u8>> {
         let mut state = start(scene);
         let mut forces = ForceTerms::new(scene, self);
@@ -92,7 +92,7 @@ impl Arithmetic {
     }
 }
 
-/// Returns the state in which a scene starts.
+/// Returns the initial state of a scene.
 #[must_use]
 pub fn start(scene: &Scene) -> State {
     let particles = &scene.particles;

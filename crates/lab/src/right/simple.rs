@@ -1,9 +1,9 @@
-//! Collisions at the end of a step, by impulses.
+//! Handles collisions at the end of a step with impulses.
 use fosssim_model::scene::Scene;
 use fosssim_num::vector::{Vec2, at, length, over, put};
 use fosssim_oracle::student::{Contact, Object, Pair, State};
 
-/// A particle that an impulse changes, and its share of the impulse; the first body's is positive.
+/// A particle that an impulse changes, with its share of the impulse; the first body's share is positive.
 type ImpulseShare = (usize, f64);
 
 /// Handles all pairs in the order of detection.
@@ -40,14 +40,14 @@ pub(super) fn handle(scene: &Scene, restitution: f64, state: &mut State) -> Vec<
     contacts
 }
 
-/// Answers a contact if its bodies approach, and returns whether they do.
+/// Responds to a contact if its bodies approach, and returns whether they do.
 fn answer(scene: &Scene, restitution: f64, v: &mut [f64], n: Vec2, shares: &[ImpulseShare]) -> bool {
     let speed = shares.iter().map(|&(particle, share)| share * at(v, particle)).sum::<Vec2>().dot(&n);
     if !(speed > 0.0) {
         return false;
     }
     let u = over(n, length(n));
-    // A half-plane stops a particle that is fixed, too.
+    // A half-plane also stops a fixed particle.
     let mobility = |&(particle, share): &ImpulseShare| {
         let body = &scene.particles[particle];
         if body.fixed && shares.len() > 1 { 0.0 } else { share * share / body.mass }

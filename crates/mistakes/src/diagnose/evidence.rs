@@ -1,9 +1,9 @@
-//! The evidence for a mistake: the symptoms of all traces that it would explain.
+//! The evidence for a mistake: the symptoms in all traces that it would explain.
 //!
-//! Each explanation of a trace is a symptom with its alternatives: all words ([`Explanation::statement`]) that would
-//! explain it as well. The word that the most traces allow is the likeliest. Words that exactly the same symptoms allow
-//! can't be distinguished; a word that other traces with wrong polynomials of the same sort do not allow is none of
-//! them.
+//! Each explanation of a trace is a symptom with its alternatives: all statements ([`Explanation::statement`]) that
+//! would explain it as well. The statement that most traces allow is the likeliest. Statements allowed by exactly the
+//! same symptoms cannot be distinguished, unless other traces with wrong polynomials of the same kind do not allow one
+//! of them.
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
@@ -14,7 +14,8 @@ use super::{
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An explanation of a trace, and the words that would explain it as well, each with whether it explains all of it.
+/// An explanation of a trace, and the statements that would explain it as well, each with whether it explains all of
+/// it.
 #[derive(Clone)]
 pub(super) struct Symptom {
     pub(super) one: Explanation,
@@ -24,7 +25,7 @@ pub(super) struct Symptom {
 /// A trace, and the part of it that is not explained yet.
 pub(super) struct OpenTrace {
     pub(super) symptoms: Vec<Symptom>,
-    /// Whether a reported explanation covers a part of it.
+    /// Whether a reported explanation covers a part of the trace.
     pub(super) is_covered: bool,
 }
 
@@ -37,13 +38,14 @@ impl OpenTrace {
         self.symptoms.iter().any(|symptom| symptom.allowed.get(said) == Some(&true))
     }
 
-    /// Returns whether it needs this mistake in addition to others: they reproduce it together, and neither does alone.
+    /// Returns whether the trace needs this mistake in addition to others: they reproduce it together, but not
+    /// separately.
     pub(super) fn needs(&self, said: &str) -> bool {
         self.symptoms.iter().any(|symptom| symptom.one.is_complete() && symptom.one.key == said)
     }
 }
 
-/// Returns the symptoms of a trace without the words that something speaks against.
+/// Returns the symptoms of a trace without the refuted statements.
 pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
     let of_one = |one: &Explanation| {
         if is_refuted(&one.key) && find(&one.key).is_none() {
@@ -66,31 +68,31 @@ pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bo
     list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(of_one).collect()
 }
 
-/// The evidence for one word.
+/// The evidence for one statement.
 #[derive(Default)]
 struct Support<'a> {
-    /// The symptoms that allow it: the trace, and the place in its list.
+    /// The symptoms that allow the statement: the trace, and the index in its list.
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
     complete: usize,
-    /// Traces that report it first.
+    /// The number of traces that report it first.
     first: usize,
-    /// The number of traces in which the same is wrong, in whatever way.
+    /// The number of traces in which the same quantity is wrong, in any way.
     kin: usize,
-    /// Traces in which the same polynomials are wrong in another way.
+    /// The number of traces in which the same polynomials are wrong in another way.
     against: usize,
-    /// The most detailed explanation with these words.
+    /// The most detailed explanation with this statement.
     told: Option<&'a Explanation>,
 }
 
 impl Support<'_> {
-    /// Returns whether as many traces speak against a guess about polynomials as for it.
+    /// Returns whether at least as many traces contradict a guess about polynomials as support it.
     fn is_denied(&self) -> bool {
         self.against > 0 && self.against >= self.complete
     }
 
-    /// Returns the weight of an explanation. Every symptom of a stage shows that it is wrong; the most frequent ones
-    /// show in what way.
+    /// Returns the weight of an explanation. Every symptom of a stage shows that the stage is wrong; the most frequent
+    /// symptoms show in which way.
     fn weight(&self) -> (usize, usize, usize) {
         (self.complete.max(self.kin), self.traces.max(self.kin), self.complete)
     }
@@ -105,7 +107,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
                 evidence.first += usize::from(place == 0 && *word == said);
-                // Of explanations with the same words, the one with the longest exact form.
+                // Of explanations with the same statement, the one with the longest exact form counts.
                 let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
                 let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.one);
                 if *word == said && evidence.told.is_none_or(says_more) {
@@ -122,7 +124,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             evidence.complete += usize::from(trace.allows_wholly(word));
             if trace.allows(word) {
                 evidence.traces += 1;
-            } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| speaks_against(&one.one, told))) {
+            } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.one, told))) {
                 evidence.against += 1;
             }
         }
@@ -130,9 +132,9 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     all
 }
 
-/// Returns whether a trace's explanation, which does not allow it, contradicts the reported polynomials: the same ones
-/// are wrong.
-fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
+/// Returns whether a trace's explanation contradicts the reported one: it is about the same polynomials, but does not
+/// allow the report.
+fn contradicts(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.about {
         About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
         About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
@@ -142,8 +144,8 @@ fn speaks_against(one: &Explanation, told: &Explanation) -> bool {
     is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
-/// Returns the likeliest mistake behind the open symptoms: the one that the most traces allow. Ties go to mistakes of
-/// the catalogue, then to the one that is reported first more often, then to the earlier one.
+/// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. Ties go to
+/// mistakes of the catalogue, then to the one more often reported first, then to the earlier one.
 pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = evidence(open);
     let is_known = |word: &str| find(word).is_some();
@@ -153,7 +155,7 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
         let order = b.symptoms.first().cmp(&a.symptoms.first());
         a.weight().cmp(&b.weight()).then(known).then(a.first.cmp(&b.first)).then(order)
     })?;
-    // Words that the same symptoms allow can't be distinguished.
+    // Statements allowed by the same symptoms cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
         **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
@@ -167,15 +169,15 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     Some(Explanation { same_as, ..unite(told, open) })
 }
 
-/// Returns an explanation with the polynomials of all traces that report the same, and with only those exact forms that
-/// all of them allow.
+/// Returns an explanation with the polynomials of all traces that report the same mistake, and only the exact forms
+/// that all of them allow.
 fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.statement();
-    // Nothing of a contradicting trace is reproduced.
+    // A contradicting trace is not reproduced at all.
     let against = open.iter().filter(|trace| !trace.allows(&said)).flat_map(|trace| &trace.symptoms);
     told.samples +=
-        against.filter(|symptom| speaks_against(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
+        against.filter(|symptom| contradicts(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
     let About::Polynomials { subjects, found } = &mut told.about else { return told };
     let agreeing: Vec<&Symptom> =
         open.iter().flat_map(|trace| &trace.symptoms).filter(|one| one.allowed.contains_key(&said)).collect();
@@ -202,7 +204,7 @@ const fn is_alternative(detail: &Detail) -> bool {
     matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
 }
 
-/// Lists for each alternative in an exact form the whole form with it.
+/// Returns the whole form with each alternative of an exact form.
 fn other_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),

@@ -1,4 +1,4 @@
-//! Puts the explanations of a trace together.
+//! Combines the explanations of a trace.
 use super::{
     Detail, Explanation,
     about::About,
@@ -17,32 +17,32 @@ use fosssim_model::{
 };
 use fosssim_student::{Area, Row, assignments::t2m2::Subject, find};
 
-/// Scenes with more pairs than this are not explained if steps log polynomials: a step of the reference, which
-/// explanations keep whole, takes some hundred bytes a pair. The first value without a number is reported all the same.
-const MOST_PAIRS: usize = 400_000;
+/// The maximum number of pairs for explanations if steps log polynomials. Explanations keep whole steps of the
+/// reference, which take a few hundred bytes per pair. The first value that is not finite is reported nevertheless.
+const MAX_PAIRS: usize = 400_000;
 
-/// Returns the likely mistakes of the program that left this trace, the likeliest first; empty if nothing is wrong, or
+/// Returns the likely mistakes of the program that wrote the trace, the likeliest first; empty if nothing is wrong, or
 /// if no known mistake explains it.
 ///
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
-/// Else explanations of polynomials come first that reproduce all their samples, then those that reproduce a part. The
-/// judge decides whether a trace is right: callers use this for traces that the fair rules reject. Traces of any
-/// content are accepted; bytes behind the first 64 MiB are ignored, and so is the record in which a trace breaks off. A
-/// trace of another scene yields only the question whether it is of this one ([`Explanation::is_other_scene`]).
+/// Otherwise explanations of polynomials come first that reproduce all their samples, then those that reproduce a part.
+/// The judge decides whether a trace is right: callers should pass traces that the fair rules reject. Traces of any
+/// content are accepted. Bytes after the first 64 MiB are ignored, and so is an incomplete record. A trace of another
+/// scene yields only the question whether it belongs to this one ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     explain_source(scene, Source::whole(trace))
 }
 
-/// Explains the kept part of a trace, as [`explain`] does.
+/// Explains the kept part of a trace, like [`explain`].
 #[must_use]
 pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }
 
-/// Explains a trace as [`explain`] does, whatever its records are read from.
+/// Explains a trace like [`explain`], with records from any source.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
-    if Layout::for_scene(scene).polynomials && pairs(scene).count() > MOST_PAIRS {
+    if Layout::for_scene(scene).polynomials && pairs(scene).count() > MAX_PAIRS {
         return not_finite::find_in_trace(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
@@ -72,10 +72,10 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         && find(&explanation.key).is_some_and(|row| is_formula(row.area))
         && explanation.is_complete()
     {
-        // The same mistake in other words, with its terms and an example of its own.
+        // The same mistake under another name, with its terms and its own example.
         let is_told = |own: &Explanation| !own.is_unexplained() && own.is_complete();
         for own in std::mem::take(&mut polynomials).into_iter().filter(is_told) {
-            // The remedy stays last. The same mistake by the same name is reported already.
+            // The remedy stays last. The same mistake under the same name is already reported.
             let remedy = explanation.details.len().saturating_sub(1);
             if !explanation.key.ends_with(&own.key) {
                 explanation.details.splice(remedy..remedy, own.details);
@@ -84,10 +84,10 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         }
     }
     if known.iter().any(Explanation::is_complete) {
-        // It reproduces the polynomials, too: their other faults only follow from it.
+        // It also reproduces the polynomials: their other faults only follow from it.
         polynomials.clear();
     }
-    // If another mistake keeps it from explaining whole steps, it may still explain all polynomials.
+    // If another mistake keeps it from explaining whole steps, it may nevertheless explain all polynomials.
     known.retain(|one| {
         let is_told = |other: &Explanation| {
             other.is_complete() && find(&one.key).is_some_and(|row| is_in_other_words(other, row))
@@ -100,7 +100,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
     });
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
-        // If pairs come in another order, polynomials of one are not those of another.
+        // If pairs are in another order, their polynomials cannot be compared.
         polynomials.clear();
     }
     let mut all = known;
@@ -108,14 +108,14 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all.extend(pairs);
     all.iter_mut().for_each(explain_letters);
     all.extend(stage);
-    // A stable sort: among equals the known mistake stays first.
+    // The sort is stable: among equals the known mistake stays first.
     all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
     all.extend(not_finite);
     all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
     all
 }
 
-/// Notes once, behind an explanation's formulas, that their letters need an explanation.
+/// Notes once, after an explanation's formulas, that their letters need an explanation.
 fn explain_letters(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;
@@ -132,7 +132,7 @@ fn explain_letters(explanation: &mut Explanation) {
     }
 }
 
-/// Returns whether mistakes of this part of the assignment are mistakes of polynomials.
+/// Returns whether mistakes in an area of the assignment are mistakes of polynomials.
 pub(super) const fn is_formula(area: Area) -> bool {
     matches!(area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane | Area::Handover)
 }

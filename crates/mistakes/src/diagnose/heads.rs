@@ -1,5 +1,5 @@
-//! The explanations that the traces of one program give together: the likeliest word, and the next ones for what it
-//! leaves open ([`evidence`](super::evidence)).
+//! Combines the explanations of all traces of one program: the likeliest statement, and the next ones for the
+//! unexplained rest ([`evidence`](super::evidence)).
 use super::{
     Detail, Explanation, Guess, ListGuess,
     about::{About, OfPolynomials},
@@ -14,24 +14,24 @@ use fosssim_model::sim::PairKind;
 use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject, find};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The greatest number of mistakes that are reported for a program, in addition to stages that are still empty.
-const MOST: usize = 3;
+/// The maximum number of mistakes reported for a program, in addition to empty stages.
+const MAX_MISTAKES: usize = 3;
 
-/// With this number of traces, a single one that looks as if a stage were empty is no evidence.
-const MANY: usize = 8;
+/// The number of traces from which a single trace is no evidence for an empty stage.
+const MANY_TRACES: usize = 8;
 
-/// Returns the likely mistakes of a program that left several traces, at most three in addition to stages that are
+/// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
 /// still empty, which count as one and come first. `refuted` are keys of mistakes that right traces of the same program
-/// contradict. The first value that is not a number does not count, and comes last: it follows from the others.
+/// contradict. The first value that is not finite does not count, and comes last, because it follows from the others.
 ///
-/// A scene alone often can't distinguish mistakes; several together nearly always can.
+/// A single scene often cannot distinguish mistakes; several together nearly always can.
 #[must_use]
 pub fn explain_together<'a>(
     traces: impl IntoIterator<Item = &'a [Explanation]>,
     refuted: &[String],
 ) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
-    // A stage of which one trace shows something is not empty, whatever the other traces look like.
+    // A stage that is visible in one trace is not empty, whatever the other traces look like.
     let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
@@ -44,15 +44,15 @@ pub fn explain_together<'a>(
     drop_what_follows(&mut open);
     keep_earliest_stage(&mut open);
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
-    while found.len() + usize::from(!empty.is_empty()) < MOST {
+    while found.len() + usize::from(!empty.is_empty()) < MAX_MISTAKES {
         let Some(next) = likeliest(&open) else { break };
         let said = next.statement();
         let is_empty = find(&next.key).is_some_and(is_empty_stage);
         let is_told = if is_empty {
-            is_seen_again(&open, &said)
+            is_confirmed(&open, &said)
         } else {
             (found.is_empty() && empty.is_empty())
-                || (next.is_settled() && is_supported(&open, &next) && !is_said_already(&found, &next, &open))
+                || (next.is_settled() && is_supported(&open, &next) && !is_repetition(&found, &next, &open))
         };
         if is_told {
             leave_open(&mut open, &said);
@@ -73,10 +73,10 @@ pub fn explain_together<'a>(
         let rows = empty.iter().filter_map(|one| find(&one.key));
         rows.filter(|row| is_formula(row.area)).any(|row| row.kind_of_pair().is_none_or(|kind| kind == subject.kind()))
     };
-    // A trace of unwritten stages shows no others.
+    // A trace of unwritten stages shows no other mistakes.
     wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
     if let Some(head) = wrong_polynomials(&wrong, &found, is_unwritten) {
-        // The stages behind a wrong formula are wrong because of it.
+        // The stages after a wrong formula are wrong because of it.
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
@@ -85,7 +85,7 @@ pub fn explain_together<'a>(
     unite_unfinished(empty).into_iter().chain(found).chain(end).collect()
 }
 
-/// Returns the first values that are not numbers, in the stage in which most traces have them.
+/// Returns the first values that are not finite, for the stage in which most traces have them.
 fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
@@ -100,12 +100,12 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     Some(likeliest)
 }
 
-/// Returns the detections whose coefficients are all zero, if the explanation is about these.
+/// Returns the detections whose coefficients are all zero, if the explanation is about them.
 fn zeros(one: &Explanation) -> Vec<Explanation> {
     let is_zero =
         matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
     let subjects = one.subjects();
-    // The approach of particles and edges is supplied.
+    // The course supplies the approach of particles and edges.
     let is_theirs = |subject: &&Subject| **subject != Subject::EdgeApproach;
     let is_all =
         |kind: &PairKind| Subject::all_of_kind(*kind).iter().filter(is_theirs).all(|one| subjects.contains(one));
@@ -122,8 +122,8 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
     kinds.filter_map(row).map(told).collect()
 }
 
-/// Returns several stages that are still empty as one explanation; their keys are in [`Explanation::same_as`]. A stage
-/// for which there is another explanation is reported by itself.
+/// Returns several empty stages as one explanation; their keys are in [`Explanation::same_as`]. A stage with another
+/// explanation is reported separately.
 fn unite_unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
     let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
     let (doubted, sure): (Vec<Explanation>, Vec<Explanation>) = empty.into_iter().partition(has_rival);
@@ -142,7 +142,7 @@ fn unite_unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
 }
 
 /// Returns the polynomials that are wrong in most traces, if no exact form holds in most and the first explanation does
-/// not cover them: their place, and what most traces report of them without an exact form.
+/// not cover them. They come with their place and the most frequent report without an exact form.
 fn wrong_polynomials(
     traces: &[Vec<Explanation>],
     found: &[Explanation],
@@ -159,7 +159,7 @@ fn wrong_polynomials(
     let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
     let is_told = found.iter().any(|one| !one.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
-    // A fault that few traces show may follow from something else.
+    // A fault in few traces may follow from another mistake.
     if is_told || most * 2 <= traces.len() {
         return None;
     }
@@ -178,16 +178,16 @@ fn wrong_polynomials(
     }
 }
 
-/// Returns whether a trace that something explains needs this known mistake, too.
+/// Returns whether an explained trace also needs this known mistake.
 fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
     let said = next.statement();
     open.iter().any(|trace| trace.is_covered && trace.needs(&said))
 }
 
-/// Returns whether a further mistake repeats a reported one in other words: a program has one formula for a polynomial
-/// and for a contact vector, and the symptoms of a stage may follow from a mistake that is reported for it or for an
-/// earlier one.
-fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
+/// Returns whether a further mistake repeats a reported one under another name. A program has one formula for each
+/// polynomial and contact vector, and the symptoms of a stage may follow from a mistake reported for it or for an
+/// earlier stage.
+fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) -> bool {
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
     let is_said = |one: &Explanation| {
@@ -195,7 +195,7 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
             return false;
         }
         let theirs = one.subjects();
-        // If a trace shows no polynomial of a known mistake, that mistake may be the one behind a reported guess.
+        // If a trace shows no polynomial of a known mistake, that mistake may be the cause of a reported guess.
         let is_guess = matches!(one.about, About::Polynomials { .. });
         let kind = find(&next.key).filter(|row| is_formula(row.area)).and_then(Row::kind_of_pair);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
@@ -221,7 +221,7 @@ fn is_said_already(found: &[Explanation], next: &Explanation, open: &[OpenTrace]
     found.iter().any(is_said)
 }
 
-/// Drops explanations that may follow from a mistake that explains one of the traces, if steps log states only.
+/// Drops explanations that may follow from a mistake that explains one of the traces, if steps log only states.
 fn drop_what_follows(open: &mut Vec<OpenTrace>) {
     let is_of_states = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_of_states(word));
@@ -231,9 +231,9 @@ fn drop_what_follows(open: &mut Vec<OpenTrace>) {
     }
 }
 
-/// Keeps of the explanations of stages those of the earliest one only: later faults may follow from it. Also drops
-/// known mistakes of that stage or a later one that explain fewer traces than show it wrong: they only resemble the
-/// fault.
+/// Keeps only the explanations of the earliest stage, because later faults may follow from it. Also drops known
+/// mistakes of that stage or a later one if they explain fewer traces than have a wrong stage: such mistakes only
+/// resemble the fault.
 fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.one);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
@@ -247,7 +247,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let late = CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest));
     let explained = |row: &Row| open.iter().filter(|trace| trace.allows_wholly(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
-    // An explanation of what is wrong with the stage covers those that only name the stage.
+    // An explanation of a stage's fault covers explanations that only name the stage.
     let is_said = all().any(|one| is_of_it(one) && !one.is_vague());
     // In another order, polynomials of one pair are in the places of another's.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
@@ -263,8 +263,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     open.retain(|trace| !trace.symptoms.is_empty());
 }
 
-/// Returns the stage of a step in which mistakes of this part of the assignment are made; nothing for
-/// polynomials and for the trace.
+/// Returns the stage of a step in which mistakes of an area are made; `None` for polynomials and for the trace.
 const fn stage_of(area: Area) -> Option<StepStage> {
     match area {
         Area::Decision => Some(StepStage::Detection),
@@ -275,14 +274,14 @@ const fn stage_of(area: Area) -> Option<StepStage> {
     }
 }
 
-/// Returns whether enough traces look as if this stage were empty.
-fn is_seen_again(open: &[OpenTrace], said: &str) -> bool {
-    open.len() < MANY || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
+/// Returns whether enough traces look as if the stage were empty.
+fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
+    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
 }
 
-/// Returns whether enough of the open symptoms name this further mistake: a trace that nothing explains yet, one that
-/// needs it in addition to a reported mistake, or two others, if there are several. Traces in which a stage looks wrong
-/// count only if nothing explains them, and one alone may follow from an earlier mistake, as missing polynomials do.
+/// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in
+/// addition to a reported mistake, or, if there are several traces, two others. Traces with a wrong stage count only if
+/// nothing explains them. A single one may follow from an earlier mistake, as missing polynomials do.
 fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     let said = next.statement();
     let naming = |is_covered: bool| {
@@ -295,7 +294,7 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     !next.is_of_missing() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
 }
 
-/// Keeps what this doesn't explain: of a trace that it explains, only other complete explanations.
+/// Removes everything that a mistake explains; of a trace that it explains, only other complete explanations stay.
 fn leave_open(open: &mut [OpenTrace], said: &str) {
     for trace in open.iter_mut().filter(|trace| trace.allows(said)) {
         trace.is_covered = true;

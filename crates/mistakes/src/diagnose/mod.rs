@@ -1,11 +1,12 @@
-//! From findings to the likely mistake.
+//! Finds the likely mistake from findings.
 //!
-//! Knows nothing of processes and reports. It takes the steps of a trace that the fair rules find wrong, finds the
-//! mistake that reproduces them, and yields [`Explanation`]s, the likeliest first: values, of which reports make
+//! Does not use processes or reports. It takes the steps of a trace that the fair rules find wrong, finds the mistake
+//! that reproduces them, and returns [`Explanation`]s, the likeliest first. These are values, from which reports make
 //! sentences.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod evidence;
+mod excluded_mistakes;
 mod explain;
 mod heads;
 mod known;
@@ -13,12 +14,12 @@ mod naming;
 mod near;
 mod not_finite;
 pub mod polynomial;
-mod ruled_out;
 mod sampling;
-mod settled;
+mod settled_trace;
 mod stages;
 mod written;
 
+pub use excluded_mistakes::refuted_keys;
 pub use explain::{explain, explain_kept};
 pub use fosssim_findings::explanation::{
     About, Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
@@ -34,8 +35,7 @@ pub use known::{can_show, find_known, reproduces, shows};
 pub use naming::is_named_in;
 pub use near::{PairTrait, pair_traits};
 pub use not_finite::not_finite;
-pub use ruled_out::refuted_keys;
-pub use settled::{SettledTrace, settle_trace};
+pub use settled_trace::{SettledTrace, settle_trace};
 pub use written::{is_written, milestone};
 
 #[cfg(test)]

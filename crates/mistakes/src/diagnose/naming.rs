@@ -1,10 +1,10 @@
-//! Whether explanations speak of the same mistake.
+//! Compares explanations: whether they mean the same mistake.
 use super::about::{About, OfPolynomials};
 use fosssim_findings::explanation::{Detail, Explanation};
 use fosssim_student::{Row, all_rows, find};
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Returns the explanation of the same steps by this known mistake instead.
+/// Returns the explanation of the same steps by a known mistake instead.
 pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
     let of_row = |detail: &Detail| match detail {
         Detail::Term(_) => Detail::Term(row.id.into()),
@@ -15,8 +15,8 @@ pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Expl
     Explanation { key: row.id.to_owned(), about: About::Mistake, details, same_as, ..one.clone() }
 }
 
-/// Returns whether these explanations of a trace name it, reported or as indistinguishable; for work that is not
-/// written yet, one stage.
+/// Returns whether a trace's explanations name a mistake, as reported or as indistinguishable; for unwritten work, one
+/// stage is enough.
 #[must_use]
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
@@ -37,8 +37,8 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
     explanations.iter().any(|one| alternatives(one).contains_key(&said))
 }
 
-/// Returns the words ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own, those
-/// that it can't distinguish, and all that would make the same polynomials. Each comes with whether it explains
+/// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,
+/// those that it cannot distinguish, and all that would give the same polynomials. Each comes with whether it explains
 /// everything that this explanation is about.
 pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
@@ -47,8 +47,7 @@ pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     if one.is_complete() {
         all.extend(all_rows().filter(|row| is_in_other_words(one, row)).map(|row| (row.id.to_owned(), true)));
     }
-    // A word that makes one polynomial makes all of them only where it would make each: a known mistake, or a general
-    // guess.
+    // A statement that explains one polynomial explains all of them only if it is a known mistake or a general guess.
     let made = one.claims_by_subject().into_values().map(|claims| {
         let words = claims.into_iter().map(|(guess, claim)| {
             let is_of_all = find(guess).is_some() || claim.ends_with('/');
@@ -61,7 +60,7 @@ pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     all
 }
 
-/// Returns whether this, found in the polynomials of one kind alone, is this known mistake: `radii-squared-apart` of
+/// Returns whether a guess from the polynomials of a single kind is this known mistake: `radii-squared-apart` of
 /// particles and edges is `pe-radii-squared-apart`.
 pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);

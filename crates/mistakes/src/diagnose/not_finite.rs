@@ -1,8 +1,8 @@
-//! Finds the step from which a trace holds values that are not finite numbers, and the stage of the step that makes the
-//! first one of numbers.
+//! Finds the step from which a trace holds values that are not finite, and the stage of the step that first computes
+//! one from finite values.
 //!
 //! NaN spreads: every result that is computed from it is NaN, and comparisons with it are false. Only the first stage
-//! whose input was numbers and whose output is not proves a mistake; later stages prove none.
+//! with finite input and an output that is not finite proves a mistake.
 use super::{
     Explanation,
     about::About,
@@ -16,14 +16,14 @@ use fosssim_model::{
     trace::{LenientFrame, LoggedImpulse, PolynomialLog},
 };
 
-/// Returns the explanation of the first value of a kept trace that is not a finite number, and no other explanation. It
-/// is empty if all values are finite, or if the reference has the same values.
+/// Returns the explanation of the first value of a kept trace that is not finite, and no other explanation. It is empty
+/// if all values are finite, or if the reference has the same values.
 #[must_use]
 pub fn not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     find_in_trace(scene, trace.into())
 }
 
-/// Explains the records at hand.
+/// Explains the records of a source.
 pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
         (StepReader::new(scene, source), Reference::new(scene), FirstNotFinite::default());
@@ -34,11 +34,11 @@ pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanatio
     first.explanation().into_iter().collect()
 }
 
-/// Finds the first value that is not a finite number, step by step.
+/// Finds the first value that is not finite, step by step.
 #[derive(Default)]
 pub(super) struct FirstNotFinite {
     is_found: bool,
-    /// The first such value; `None` if the reference has the same.
+    /// The first such value; `None` if the reference has the same value.
     told: Option<NotFinite>,
 }
 
@@ -51,7 +51,7 @@ impl FirstNotFinite {
         }
     }
 
-    /// Checks a step: is it the first one, or finite again?
+    /// Records whether the step is the first with a value that is not finite, or finite again.
     pub(super) fn step(&mut self, reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) {
         if self.is_found {
             let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(is_wild);
@@ -68,13 +68,13 @@ impl FirstNotFinite {
         }
     }
 
-    /// Returns the explanation of that value.
+    /// Returns the explanation of the found value.
     pub(super) fn explanation(self) -> Option<Explanation> {
         self.told.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
     }
 }
 
-/// Returns the first value that is no finite number.
+/// Returns the first value that is not finite.
 fn wild_value(state: &State) -> Option<f64> {
     state.positions.iter().chain(&state.velocities).copied().find(|value| !value.is_finite())
 }
@@ -94,8 +94,8 @@ fn is_wild(frame: &LenientFrame) -> bool {
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
-/// Returns the stage of a step that makes a value that is not a number, from a state of numbers; `None` if the
-/// reference does so as well.
+/// Returns the stage of a step that computes a value that is not finite from a finite state; `None` if the reference
+/// does so as well.
 fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
@@ -106,7 +106,7 @@ fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames:
     (has_result && capture.records.is_finite()).then_some(found)
 }
 
-/// Returns the first stage whose results are no numbers, with the first such value.
+/// Returns the first stage with results that are not finite, with the first such value.
 fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     let StepFrames { mid, end, .. } = frames;
     let polynomial = wild_polynomial(&end.polynomials);
@@ -138,7 +138,7 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     }
 }
 
-/// Returns the stage in the one pass of `continuous-time`, where each contact is resolved before the next pair is
+/// Returns the stage in the single pass of `continuous-time`, where each contact is resolved before the next pair is
 /// checked.
 fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64)>) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
@@ -151,7 +151,7 @@ fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64
     {
         return Some((NanStage::ContactVectors, value));
     }
-    // A response before it in the pass has moved its bodies to where no numbers are.
+    // An earlier response in the pass has made the positions of its bodies not finite.
     let own = bodies(scene, pair);
     let has_moved = |contact: &LoggedImpulse| {
         place(contact).is_some_and(|place| place < at)
@@ -161,7 +161,7 @@ fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64
     Some((if is_moved { NanStage::Responses } else { NanStage::Detection(Some(pair.kind)) }, value))
 }
 
-/// Returns the pair to which a polynomial of a pass belongs, with its place in the pass.
+/// Returns the pair of a polynomial of a pass, with its index in the pass.
 fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     let mut first = 0;
     pairs(scene).iter().enumerate().find(|(_, pair)| {

@@ -1,12 +1,12 @@
-//! Finds the mistakes that a student of a milestone can make: those in the parts that the student writes.
+//! Finds the mistakes that a student of a milestone can make, which are in the parts written by the student.
 use fosssim_model::{
     assignments::{Assignment, Part},
     scene::Scene,
 };
 use fosssim_student::{Area, Mistake, Row, StepMistake, Term};
 
-/// Returns whether a student of this milestone writes the code of the mistake, or hands in its file. Every student may
-/// change what is written to a trace, and how a program ends.
+/// Returns whether a student of this milestone writes the code of the mistake, or submits its file. Every student can
+/// change the trace's contents, and the end of the program.
 #[must_use]
 pub fn is_written(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
@@ -21,7 +21,7 @@ pub fn is_written(row: &Row, whose: Assignment) -> bool {
     whose.definition().student.iter().any(is_of)
 }
 
-/// Returns the quantity of a mistake in forces, integrators and what depends on them: a row's name begins with it.
+/// Returns the term that a mistake changes; the row's id begins with its name.
 pub(super) fn term(row: &Row) -> Term {
     if let Mistake::Step(StepMistake::Edit(edit)) = row.mistake {
         return edit.term;
@@ -41,7 +41,7 @@ pub(super) fn term(row: &Row) -> Term {
     }
 }
 
-/// Returns the milestone of a submission that runs on these scenes: the first whose programs know all of them.
+/// Returns the milestone of a submission that runs on `scenes`: the first whose programs know all of them.
 #[must_use]
 pub fn milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
     let of_scene = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! The likely mistakes of one submission, which its scenes show together.
+//! The likely mistakes of one submission, from all its scenes together.
 
 use crate::diagnose::{explain_together, is_named_in, settle_trace};
 use fosssim_findings::{
@@ -12,8 +12,8 @@ use told::{cut_result, cut_smallest};
 
 pub mod told;
 
-/// Returns the grade with no more about its scenes than hints allow for students, and nothing about other submissions.
-/// Groups that students do not see are in it, too.
+/// Returns the grade with only the scene details that hints allow for students, and without information about other
+/// submissions. Groups that students do not see are included.
 #[must_use]
 pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     let is_all_told = grade.groups.iter().all(|group| group.hints == Hints::Full);
@@ -37,8 +37,8 @@ pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
 }
 
 /// Returns the grade with only what students see immediately: points and verdict are those of the remaining groups, and
-/// hints limit the reports on their scenes ([`told_to_students`]). Unless the suite shows all that programs print,
-/// scenes have their verdicts only ([`withhold`](fosssim_findings::SceneResult::withhold)).
+/// hints limit the reports on their scenes ([`told_to_students`]). Unless the suite shows the output of programs,
+/// scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
 pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
@@ -53,7 +53,7 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
         points,
         max_points,
         groups,
-        // It counts scenes that are not here.
+        // The counts include scenes that are not in this grade.
         located: None,
         wall: Duration::ZERO,
         ..grade.as_ref().clone()
@@ -66,8 +66,8 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(visible)
 }
 
-/// Returns the smallest scenes that students may see: made from a scene of a group that they see immediately, and with
-/// no more than its hints allow. There is none if the suite withholds what programs chose, because smallest scenes
+/// Returns the smallest scenes that students may see. They are made from a scene of a visible group, with only the
+/// details that its hints allow. There are none if the suite withholds output of programs, because smallest scenes
 /// depend on it.
 fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
     let told = |small: &SmallestScene| {
@@ -78,9 +78,8 @@ fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
     if grade.is_visible() || grade.shows_output { grade.smallest.iter().filter_map(told).collect() } else { Vec::new() }
 }
 
-/// Returns the points of the scenes that a mistake alone makes wrong, which is what mending it is worth: the simulator
-/// with this mistake, and no other, makes their wrong steps as the submission does. Points for speed and extra points
-/// do not count.
+/// Returns the points of the scenes that a mistake alone makes wrong, which is the gain from fixing it: the simulator
+/// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points do not count.
 #[must_use]
 pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
     let is_mended = |scene: &SceneGrade| {
@@ -96,21 +95,21 @@ pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
         let lost = |scene: &SceneGrade| scene.points.map_or(0.0, |points| scene.max_points - points);
         group.scenes.iter().filter(|scene| group.all_or_nothing || is_mended(scene)).map(lost).sum()
     };
-    // A sum of nothing is -0.
+    // An empty sum is -0.
     grade.groups.iter().filter(|group| !group.extra).map(of_group).sum::<f64>() + 0.0
 }
 
-/// Returns the mistake that explains most wrong scenes, if several have explanations: together they nearly always
-/// distinguish mistakes that one scene can't.
+/// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Together they nearly
+/// always distinguish mistakes that one scene cannot.
 #[must_use]
 pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
     let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
     if explained > 1 { likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
 }
 
-/// Returns the likely mistakes, at most three, with the number of wrong scenes that each explains: first the mistake
-/// that explains most, then the mistake that explains most of the rest, provided that it explains those scenes
-/// completely ([`explain_together`]).
+/// Returns at most three likely mistakes, with the number of wrong scenes that each explains. The mistake that explains
+/// most scenes comes first; later ones explain most of the rest, and explain those scenes completely
+/// ([`explain_together`]).
 #[must_use]
 pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
@@ -122,14 +121,14 @@ pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
         .collect()
 }
 
-/// Returns the number of scenes whose explanations name this mistake, or an unwritten stage.
+/// Returns the number of scenes whose explanations name `mistake`, or one of its unwritten stages.
 #[must_use]
 pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
 }
 
-/// Settles the explanations of each scene by all scenes together: by several wrong ones, or by right ones that
-/// contradict a mistake. A caller that leaves groups out of a grade calls it again, so that nothing of them is
+/// Corrects the explanations of each scene by all scenes together: by several wrong ones, or by right ones that
+/// contradict a mistake. A caller that removes groups from a grade must call it again, so that nothing about them is
 /// revealed.
 pub fn settle(grade: &mut Grade) {
     let speak_together = !grade.refuted.is_empty() || likely_mistake(grade).is_some();

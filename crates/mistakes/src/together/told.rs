@@ -1,5 +1,5 @@
-//! The part of a result that hints let a reader know. It is cut here, before a report is made, so that no format can
-//! let the rest out.
+//! Limits a result to the parts that hints allow. The parts are removed before a report is made, so no format can
+//! reveal the rest.
 use fosssim_findings::{
     Hints, SceneResult, Verdict,
     explanation::Explanation,
@@ -8,8 +8,8 @@ use fosssim_findings::{
 };
 use fosssim_student::find;
 
-/// Cuts a result down to a level. The verdict, its reason and the difference of the rule books stay at all levels, but
-/// at [`Hints::None`] the fault of a wrong trace is removed.
+/// Limits a result to a hint level. The verdict, its reason and the difference of the rule books stay at all levels,
+/// but at [`Hints::None`] the fault of a wrong trace is removed.
 pub fn cut_result(hints: Hints, result: &mut SceneResult) {
     if hints == Hints::Full {
         return;
@@ -22,7 +22,7 @@ pub fn cut_result(hints: Hints, result: &mut SceneResult) {
     result.card = result.card_for_students.take();
 }
 
-/// Cuts a smallest scene down to a level; at [`Hints::None`] nothing is left.
+/// Limits a smallest scene to a hint level; `None` at [`Hints::None`].
 #[must_use]
 pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
     small.explanations = cut(hints, std::mem::take(&mut small.explanations));
@@ -30,14 +30,15 @@ pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestSc
     (hints > Hints::None).then_some(small)
 }
 
-/// Cuts explanations down to a level: below [`Hints::What`] only the first value without a number is left, if there is
-/// one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each has a sentence without
-/// formulas, and the known mistakes that can't be distinguished from it; exact forms and examples need [`Hints::Full`].
+/// Limits explanations to a hint level. Below [`Hints::What`] only the first value that is not finite is left, if there
+/// is one ([`Explanation::is_not_finite`]), and at [`Hints::None`] nothing. At [`Hints::What`] each has a sentence
+/// without formulas, and the known mistakes that cannot be distinguished from it; exact forms and examples need
+/// [`Hints::Full`].
 #[must_use]
 pub fn cut(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
-        // The place, and no guesses.
+        // The place, but no guesses.
         Hints::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
         Hints::What => explanations
             .into_iter()
@@ -94,7 +95,7 @@ mod tests {
         assert_eq!(told(Hints::Full), [explanation()]);
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
-            // The first value without a number is a place and no guess.
+            // The first value that is not finite is a place and not a guess.
             let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true, ends: false };
             let end = Explanation { about: About::NotFinite(end), ..explanation() };
             assert_eq!(cut(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
@@ -133,7 +134,7 @@ mod tests {
             assert_eq!(part.examples.len(), full.examples.len());
             assert_eq!((&part.counts, part.wrong_steps, part.ruling), (&full.counts, full.wrong_steps, full.ruling));
         }
-        // The book whose verdict counts speaks first.
+        // The rule book whose verdict counts comes first.
         assert_eq!(told(Hints::Full).official(), &full.parity);
         assert_eq!(all(Rules::Fair).official(), full.fair.as_ref().expect("asked"));
     }

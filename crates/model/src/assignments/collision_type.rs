@@ -1,14 +1,14 @@
-//! The collision types that scenes name (scene-format.md 2).
+//! The collision types of scenes (scene-format.md 2).
 
 fosssim_num::closed_set! {
     /// A collision type, without its numbers.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum CollisionType {
-        /// No handling.
+        /// No collision handling.
         None = "none",
         /// Impulses on overlap at the end of the step.
         Simple = "simple",
-        /// A repelling force.
+        /// A repelling force between near bodies.
         Penalty = "penalty",
         /// Continuous-time detection, one pass.
         ContinuousTime = "continuous-time",

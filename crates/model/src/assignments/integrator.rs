@@ -1,14 +1,14 @@
-//! The time integrators that scenes name (scene-format.md 4).
+//! The time integrators of scenes (scene-format.md 4).
 
 fosssim_num::closed_set! {
     /// A time integrator (simulation.md 4), with its name in scenes.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum Integrator {
-        /// Positions and velocities from the start of the step alone.
+        /// Positions and velocities are computed only from the start of the step.
         ExplicitEuler = "explicit-euler",
-        /// Velocities first, then positions by the new velocities.
+        /// Velocities are advanced first; positions then use the new velocities.
         ForwardBackwardEuler = "forward-backward-euler",
-        /// Another name for [`Integrator::ForwardBackwardEuler`], which is printed for both.
+        /// Another name for [`Integrator::ForwardBackwardEuler`], whose name is printed for both.
         SymplecticEuler = "symplectic-euler",
         /// Newton's method in every step.
         ImplicitEuler = "implicit-euler",
@@ -18,7 +18,7 @@ fosssim_num::closed_set! {
 }
 
 impl Integrator {
-    /// Returns whether it solves a system of equations in every step.
+    /// Returns whether the integrator solves a system of equations in every step.
     #[must_use]
     pub const fn is_implicit(self) -> bool {
         match self {

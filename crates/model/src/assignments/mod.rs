@@ -1,10 +1,10 @@
-//! The course's assignments: what the programs of each detect, log and drop, what its starter library knows, and what
-//! its student writes.
+//! The course's assignments: what each assignment's programs detect, log and drop, the features of its starter library,
+//! and the parts written by its student.
 //!
-//! A [`Definition`] has this as data, one file per assignment here. All else that depends on an assignment - suites,
-//! the catalogue of mistakes, formulas, probe scenes - is in a folder `assignments/<key>` of the room that has such a
-//! thing. Readers of traces, simulator and judge use the assignment of a scene, which follows from its collision type
-//! ([`Assignment::for_collisions`]). It knows nothing of scenes, states and files.
+//! Each [`Definition`] holds this as data, one file per assignment. Everything else that depends on an assignment
+//! (suites, the catalogue of mistakes, formulas, probe scenes) is in a folder `assignments/<key>` of the crate that
+//! needs it. Readers of traces, simulator and judge use the assignment of a scene, which follows from its collision
+//! type ([`Assignment::for_collisions`]). This module does not use scenes, states or files.
 
 mod collision_type;
 mod force_kind;
@@ -55,7 +55,7 @@ impl Assignment {
         all
     }
 
-    /// Returns its definition.
+    /// Returns the rules of the assignment.
     #[must_use]
     pub const fn definition(self) -> &'static Definition {
         match self {
@@ -68,7 +68,7 @@ impl Assignment {
         }
     }
 
-    /// Returns the assignment that brought this collision type into the course.
+    /// Returns the assignment that introduced a collision type.
     #[must_use]
     pub const fn for_collisions(collision: CollisionType) -> Self {
         match collision {
@@ -78,13 +78,13 @@ impl Assignment {
         }
     }
 
-    /// Returns the assignment's key: the name of its suite and of its folder in every room that has one.
+    /// Returns the assignment's key, which names its suite and its folders.
     #[must_use]
     pub const fn key(self) -> &'static str {
         self.definition().key
     }
 
-    /// Returns the assignment with this key.
+    /// Returns the assignment named `key`.
     #[must_use]
     pub fn from_key(key: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|assignment| assignment.key() == key)
@@ -98,23 +98,22 @@ pub struct Definition {
     pub key: &'static str,
     /// The assignment's name in the course.
     pub title: &'static str,
-    /// The collision types that it adds, and the handling of each.
+    /// The collision types that the assignment adds, and the handling of each.
     pub handlings: &'static [Handling],
-    /// The kinds of pairs whose polynomials its detections log, in the order in which a pass looks at a particle's
-    /// pairs; [`PairKind::polynomials`] is the number that each logs.
+    /// The kinds of pairs whose polynomials its detections log, in the order of a pass; [`PairKind::polynomials`] is
+    /// the number of polynomials of each.
     pub pairs: &'static [PairKind],
-    /// The coefficients that are dropped of polynomials.
+    /// The rule for dropping coefficients of polynomials.
     pub dropping: Dropping,
     /// The version that the original program shows above a run.
     pub version: &'static str,
     /// The original's name for its verdict on collisions (oracle-behavior.md 6).
     pub verdict: &'static str,
-    /// Whether the original prints after each step how long it took, and writes into `residual.txt` whether collisions
-    /// passed.
-    pub tells_times: bool,
-    /// The part of a scene that its starter library knows.
+    /// Whether the original prints the time of each step, and writes into `residual.txt` whether collisions passed.
+    pub prints_times: bool,
+    /// The part of a scene that the starter library supports.
     pub library: Library,
-    /// The parts that its student writes. Nothing else is a student's mistake.
+    /// The parts written by the student. Only these can hold a student's mistake.
     pub student: &'static [Part],
 }
 
@@ -127,37 +126,38 @@ const COMMON: Definition = Definition {
     dropping: Dropping::Leading,
     version: "Fall 2010 v.A",
     verdict: "Collisions Passed",
-    tells_times: false,
+    prints_times: false,
     library: LIBRARY,
     student: &[],
 };
 
 impl Definition {
-    /// Returns its handling of a collision type; `None` if another assignment adds the type.
+    /// Returns the assignment's handling of a collision type; `None` if another assignment adds the type.
     #[must_use]
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
     }
 }
 
-/// The words of a scene that a starter library reads. Originals know more: those of Theme 1 are one program.
+/// The elements of a scene that a starter library reads. Original programs read more: those of Theme 1 are one program.
 ///
-/// It rejects a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
+/// The library rejects a scene with another integrator ("Invalid integrator"), and ignores elements of other forces.
 #[derive(Debug, Clone, Copy)]
 pub struct Library {
-    /// The library's integrators.
+    /// The integrators that the library supports.
     pub integrators: &'static [Integrator],
-    /// The library's forces.
+    /// The forces that the library supports.
     pub forces: &'static [ForceKind],
     /// The collision types that scenes of the assignment may have.
     pub collisions: &'static [CollisionType],
-    /// Whether it rejects other collision types; else it ignores them, or does for them what no student writes.
+    /// Whether the library rejects other collision types. Otherwise it ignores them, or handles them without the
+    /// student's code.
     pub refuses_collisions: bool,
-    /// Whether scenes select the contest's detection. Its penalty force has no layer then: the thickness is 0.
+    /// Whether scenes select the contest's detection. The penalty force then has no layer: the thickness is 0.
     pub contest: bool,
 }
 
-/// All that a library can know; a milestone's own is a part of it.
+/// Every feature that a library can support; each milestone's library supports a part.
 const LIBRARY: Library = Library {
     integrators: &[
         Integrator::ExplicitEuler,
@@ -172,18 +172,18 @@ const LIBRARY: Library = Library {
     contest: false,
 };
 
-/// The work of a program for a collision type.
+/// The tasks of a program for a collision type.
 #[derive(Debug)]
 pub struct Handling {
     /// The collision type.
     pub collision: CollisionType,
-    /// The lists in its records.
+    /// The lists in the program's records.
     pub records: RecordLists,
-    /// The original's name for it above a run (oracle-behavior.md 3).
+    /// The original's name for the handling, printed above a run (oracle-behavior.md 3).
     pub heading: &'static str,
 }
 
-/// The lists in the records of a step besides positions and velocities (trace-format.md 1, 2).
+/// The lists in the records of a step in addition to positions and velocities (trace-format.md 1, 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RecordLists {
     /// The list of impulses.
@@ -195,9 +195,9 @@ pub struct RecordLists {
 /// The content of a record's list of impulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ImpulseList {
-    /// There is no such list.
+    /// Records have no list of impulses.
     Absent,
-    /// The list is there and always empty, whatever happens in the step.
+    /// Records have an empty list, whatever happens in the step.
     Empty,
     /// The responses of the step.
     Responses,
@@ -212,8 +212,8 @@ pub enum Dropping {
     Leading,
 }
 
-/// Marks code that depends on the rule that small leading coefficients are dropped. A second rule makes the compiler
-/// name all these places.
+/// Marks code that depends on the rule that small leading coefficients are dropped. If a second rule is added, the
+/// compiler reports all these places.
 #[macro_export]
 macro_rules! drops_leading {
     () => {

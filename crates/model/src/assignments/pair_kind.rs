@@ -27,23 +27,24 @@ impl PairKind {
         }
     }
 
-    /// Returns the number of coefficients of each before small leading ones are dropped; 0 without a polynomial.
+    /// Returns the number of coefficients of each polynomial before small leading ones are dropped; 0 for a missing
+    /// polynomial.
     #[must_use]
-    pub const fn coefficients(self) -> [usize; Self::MOST_POLYNOMIALS] {
+    pub const fn coefficients(self) -> [usize; Self::MAX_POLYNOMIALS] {
         match self {
             Self::ParticleEdge => [5, 3, 3, 6],
             Self::ParticleParticle | Self::ParticleHalfPlane => [3, 2, 0, 0],
         }
     }
 
-    /// Returns the number that a trace writes.
+    /// Returns the number of the kind in a trace.
     #[must_use]
     pub const fn code(self) -> i32 {
         self as i32
     }
 
-    /// The greatest number of polynomials that a detection call logs.
-    pub const MOST_POLYNOMIALS: usize = 4;
+    /// The maximum number of polynomials that a detection call logs.
+    pub const MAX_POLYNOMIALS: usize = 4;
 
     /// Returns the kind's place in [`PairKind::ALL`].
     #[inline]
@@ -52,7 +53,7 @@ impl PairKind {
         self as usize
     }
 
-    /// Returns the kind that a trace writes as this number; none for numbers of a damaged trace.
+    /// Returns the kind with number `code` in a trace; `None` for the numbers of a damaged trace.
     #[must_use]
     pub fn from_code(code: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)

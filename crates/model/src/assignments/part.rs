@@ -1,7 +1,7 @@
-//! The parts of an assignment that a student writes: whatever else a program does is the starter library's.
+//! The parts of an assignment that a student writes. The starter library does the rest.
 use super::{ForceKind, Integrator, PairKind};
 
-/// A part of a student's work: a function, or the few that belong together.
+/// A part of a student's work: a function, or a few related functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
     /// The kinetic energy, which no trace holds.
@@ -14,7 +14,7 @@ pub enum Part {
     Jacobians(ForceKind),
     /// The detection at the end of a step.
     SimpleDetection(PairKind),
-    /// The response to the overlaps that are found.
+    /// The response to the detected overlaps.
     SimpleResponse(PairKind),
     /// The gradient of the penalty force.
     Penalty(PairKind),
@@ -22,7 +22,7 @@ pub enum Part {
     Detection(PairKind),
     /// The loop of impulses.
     Impulses,
-    /// The loop of impact zones.
+    /// The loop that moves impact zones.
     Zones,
     /// The rigid motion of one zone.
     Failsafe,
@@ -31,7 +31,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// Returns the file that the student hands in for it.
+    /// Returns the file in which the student submits the part.
     #[must_use]
     pub const fn file(self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! Theme 1: particles, forces and integrators. Its milestones bring forces and integrators, not collision types.
+//! Theme 1: particles, forces and integrators. Its milestones add forces and integrators, not collision types.
 use super::{
     COMMON, CollisionType, Definition, ForceKind, Handling, ImpulseList, Integrator, LIBRARY, Library, Part,
     RecordLists,

@@ -1,8 +1,8 @@
-//! The errors that only several elements of a scene together can have (scene-format.md 6, collisions.md 7).
+//! Checks for errors that involve several elements of a scene (scene-format.md 6, collisions.md 7).
 //!
-//! Coincidence is exact: two points are in one place when their coordinates compare equal, `-0` and `0` included, and a
-//! particle is on an edge or a half-plane when the formula of simulation.md 3 gives the zero vector. Only the start is
-//! checked; the simulator finds what happens later.
+//! Coincidence is exact: two points coincide if their coordinates compare equal, `-0` and `0` included, and a particle
+//! is on an edge or a half-plane if the formula of simulation.md 3 gives the zero vector. Only the start is checked;
+//! the simulator finds what happens later.
 use super::document::Document;
 use super::model::{Collision, CollisionDetection, Edge, Force, HalfPlane, Particle};
 use super::problem::{Problem, Report};
@@ -11,15 +11,15 @@ use super::xml::{Part, SceneParts};
 use crate::assignments::Integrator;
 use fosssim_num::vector::Vec2;
 
-/// The most particles that an implicit integrator is given: its dense matrix of (2N)^2 numbers then takes half a
+/// The maximum number of particles with an implicit integrator. Its dense matrix of (2N)² numbers then takes half a
 /// gibibyte, and solving it takes minutes per step.
-pub const LARGEST_IMPLICIT: usize = 4096;
+pub const MAX_IMPLICIT: usize = 4096;
 
-/// The greatest number of pairs of a particle and an obstacle that are checked for coincidence, so that the time of a
+/// The maximum number of pairs of a particle and an obstacle that are checked for coincidence, so that the time of a
 /// check does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
-const MOST_PAIRS: usize = 4_000_000;
+const MAX_PAIRS: usize = 4_000_000;
 
-/// Judges the scene as a whole.
+/// Checks the scene as a whole.
 pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
     check_steps(parts, report);
     size(document, parts, report);
@@ -44,14 +44,14 @@ fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let (Some(duration), Some(integrator)) = (&parts.duration, &parts.integrator) else { return };
     let (Some(time), Some((_, time_step))) = (duration.value, integrator.value) else { return };
     if time < 0.0 || time_step <= 0.0 {
-        // Each has been reported already.
+        // Each error has been reported already.
         return;
     }
     let steps = (time / time_step).ceil();
     if time == 0.0 {
-        report.warning(|| about(duration.tag, "the duration is zero".into(), "no step is made"));
+        report.warning(|| about(duration.tag, "the duration is zero".into(), "there are no steps"));
     } else if steps > f64::from(i32::MAX) {
-        let help = "at most 2147483647 steps are possible; the original would make none";
+        let help = "at most 2147483647 steps are possible; the original would run none";
         report.error(|| {
             about(duration.tag, format!("{time:?} seconds in steps of {time_step:?} are {steps:e} steps"), help)
         });
@@ -62,10 +62,10 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
-        report.warning(|| Problem::new(span, "the scene has no particles").help("its trace holds no state"));
+        report.warning(|| Problem::new(span, "the scene has no particles").help("its trace would contain no state"));
     }
     if let (Some(part), true) = (&parts.integrator, is_implicit(parts))
-        && count > LARGEST_IMPLICIT
+        && count > MAX_IMPLICIT
     {
         report.error(|| {
             about(
@@ -82,7 +82,7 @@ fn is_implicit(parts: &SceneParts<'_, '_>) -> bool {
     integrator.is_some_and(|(integrator, _)| integrator.is_implicit())
 }
 
-/// Integrators and forces that do not go together.
+/// Checks for forces that the integrator cannot handle.
 fn check_methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let Some(integrator) = &parts.integrator else { return };
     if is_implicit(parts) {
@@ -107,14 +107,14 @@ fn normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
         let Some(HalfPlane { normal, .. }) = part.value else { continue };
         if normal.dot(&normal) == 0.0 {
             report.error(|| {
-                let help = "`nx` and `ny` must not both be zero, nor so small that their squares vanish";
+                let help = "`nx` and `ny` must not both be zero or so small that their squares vanish";
                 about(part.tag, format!("the normal of halfplane {number} has no length"), help)
             });
         }
     }
 }
 
-/// Checks particles that are fixed and move: half-planes reflect these, too.
+/// Checks for fixed particles that move; half-planes reflect fixed particles as well.
 fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let responds = matches!(
         parts.collision,
@@ -133,7 +133,7 @@ fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// Returns whether two particles start in one place, if their places could be read.
+/// Returns whether two particles start at the same position, if the positions could be read.
 fn in_one_place(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
     parts.place(first).zip(parts.place(second)).is_some_and(|(first, second)| first == second)
 }
@@ -146,7 +146,7 @@ fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
                 let help = "an edge without length has no direction; a spring on it is not a number";
                 about(
                     part.tag,
-                    format!("edge {number} joins particles {first} and {second}, which start in one place"),
+                    format!("edge {number} joins particles {first} and {second}, which start at one position"),
                     help,
                 )
             });
@@ -162,16 +162,16 @@ fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
         if in_one_place(parts, first, second) {
             let name = part.tag.rule.name;
             report.error(|| {
-                let message = format!("`{name}` between particles {first} and {second}, which start in one place");
+                let message = format!("`{name}` between particles {first} and {second}, which start at one position");
                 about(part.tag, message, "at distance zero it is not a number")
             });
         }
     }
 }
 
-/// The severity of a body that starts exactly on another.
+/// The severity for a body that starts exactly on another.
 struct ContactRule {
-    /// Whether the penalty force acts: its direction is then not a number.
+    /// Whether the penalty force acts; its direction is then NaN.
     penalty: bool,
     /// Whether half-planes move fixed particles.
     responds: bool,
@@ -181,7 +181,7 @@ struct ContactRule {
 impl ContactRule {
     fn from_parts(parts: &SceneParts<'_, '_>) -> Option<Self> {
         match parts.collision? {
-            // In the contest bodies at the same place leave each other alone.
+            // In the contest, bodies at the same position do not interact.
             Collision::None
             | Collision::Simple { .. }
             | Collision::Penalty { detection: CollisionDetection::Contest, .. } => None,
@@ -191,7 +191,7 @@ impl ContactRule {
         }
     }
 
-    /// Returns whether objects of these radii at distance zero touch.
+    /// Returns whether objects touch that have these radii and distance zero.
     fn touches(&self, radii: f64) -> bool {
         0.0 < radii + if self.penalty { self.thickness } else { 0.0 }
     }
@@ -214,7 +214,7 @@ fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, re
         .enumerate()
         .filter_map(|(number, part)| part.value.as_ref().map(|particle| (number, part.tag, particle)))
         .collect();
-    // Adding zero makes -0 the same as 0 for the order, too.
+    // Adding zero makes -0 and 0 equal in the order as well.
     let key = |particle: &Particle| (particle.position.x + 0.0, particle.position.y + 0.0);
     particles.sort_by(|(m, _, a), (n, _, b)| {
         let ((ax, ay), (bx, by)) = (key(a), key(b));
@@ -223,12 +223,12 @@ fn check_coincident_particles(parts: &SceneParts<'_, '_>, rule: &ContactRule, re
     for group in particles.chunk_by(|(_, _, a), (_, _, b)| a.position == b.position) {
         let movable = group.iter().position(|(_, _, particle)| !particle.fixed);
         let Some(movable) = movable.filter(|_| group.len() > 1) else { continue };
-        // Every other pair is reported once; two fixed particles in one place do no harm.
+        // Each other pair is reported once; two fixed particles at the same position are harmless.
         for (place, (number, tag, particle)) in group.iter().enumerate() {
             let partner = if particle.fixed { movable } else { 0 };
             let (other, _, with) = group[partner];
             if place > partner && rule.touches(particle.radius + with.radius) {
-                rule.report(tag, report, || format!("particles {other} and {number} start in one place"));
+                rule.report(tag, report, || format!("particles {other} and {number} start at the same position"));
             }
         }
     }
@@ -240,14 +240,14 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
     };
     let pairs =
         parts.edges.iter().enumerate().flat_map(|edge| parts.particles.iter().enumerate().map(move |p| (edge, p)));
-    for ((edge_number, edge), (number, particle)) in pairs.take(MOST_PAIRS) {
+    for ((edge_number, edge), (number, particle)) in pairs.take(MAX_PAIRS) {
         let (Some(edge), Part { tag, value: Some(particle) }) = (edge.value, particle) else { continue };
         let Some((start, end)) = parts.place(edge.first).zip(parts.place(edge.second)) else { continue };
         if number == edge.first || number == edge.second || start == end {
             continue;
         }
         let along = end - start;
-        // As the penalty force does it, limits included.
+        // Computed like the penalty force does, limits included.
         let alpha = ((particle.position - start).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
         let on_it = (start + alpha * along) - particle.position == Vec2::zeros();
         let at_end = particle.position == start || particle.position == end;
@@ -261,7 +261,7 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
 fn check_particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule, report: &mut Report) {
     let planes = parts.half_planes.iter().enumerate();
     let pairs = planes.flat_map(|plane| parts.particles.iter().enumerate().map(move |particle| (plane, particle)));
-    for ((plane_number, plane), (number, particle)) in pairs.take(MOST_PAIRS) {
+    for ((plane_number, plane), (number, particle)) in pairs.take(MAX_PAIRS) {
         let (Some(plane), Part { tag, value: Some(particle) }) = (plane.value, particle) else { continue };
         let (toward, normal) = (plane.point - particle.position, plane.normal);
         let scale = toward.dot(&normal) / normal.dot(&normal);

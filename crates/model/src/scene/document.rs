@@ -1,34 +1,34 @@
-//! The scene's elements with their places, and everything that is wrong with the XML itself.
+//! The scene's elements with their places, and all faults of the XML itself.
 //!
-//! quick-xml cuts the text into tags; nesting and the names of elements are judged here, attributes in `tag`. Nothing
-//! is read twice, so that the work grows with the length of the text only.
+//! quick-xml splits the text into tags. This module checks nesting and the names of elements, `tag` checks attributes.
+//! Nothing is read twice, so the work is proportional to the length of the text.
 use std::{collections::BTreeSet, ops::Range};
 
 use quick_xml::errors::{Error, SyntaxError};
 use quick_xml::events::Event;
 
-use super::problem::{MOST_PROBLEMS, Problem, Report, quote};
+use super::problem::{MAX_PROBLEMS, Problem, Report, quote};
 use super::tag::{self, Tag, is_space, offset};
 use super::{grammar, rule::Rule};
 
 /// The elements of the text.
 #[derive(Debug, Default)]
 pub(super) struct Document<'t> {
-    /// The bytes of `<scene`, when there is a scene.
+    /// The bytes of `<scene`, if there is a scene.
     pub(super) scene: Option<Range<usize>>,
     /// The known children of the scene in document order.
     pub(super) tags: Vec<Tag<'t>>,
-    /// Whether the XML is broken, so that elements may be missing through no fault of their own.
+    /// Whether the XML is broken, so that elements may have been lost.
     pub(super) broken: bool,
-    /// Elements that a misspelt one was probably meant to be.
+    /// The probable intended names of misspelt elements.
     pub(super) meant: BTreeSet<&'static str>,
-    /// Whether there are elements of the rigid-body stub; they are not judged.
+    /// Whether the scene has elements of the rigid-body stub, which are not checked.
     pub(super) rigid_bodies: bool,
-    /// Whether a root element of another name has been complained about.
+    /// Whether a root element with another name has been reported.
     pub(super) other_root: bool,
 }
 
-/// Reads the text, reporting every problem of the XML, of names and of nesting.
+/// Reads the text, and reports every fault of the XML, of names and of nesting.
 pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
     let reading = DocumentReader {
         text,
@@ -43,11 +43,11 @@ pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
     reading.all()
 }
 
-/// An element that is open.
+/// An element that has not been closed.
 struct OpenElement<'t> {
     name: &'t str,
     span: Range<usize>,
-    /// Whether an element inside it has been complained about.
+    /// Whether an element inside has been reported.
     complained: bool,
 }
 
@@ -59,7 +59,7 @@ struct DocumentReader<'t, 'r> {
     roots: usize,
     in_scene: bool,
     wrong_ends: usize,
-    /// Whether the last thing seen was stray text that has been reported.
+    /// Whether the last item was stray text that has been reported.
     stray: bool,
 }
 
@@ -69,7 +69,7 @@ impl<'t> DocumentReader<'t, '_> {
         let skipped = if self.text.starts_with('\u{feff}') { 3 } else { 0 };
         let mut reader = quick_xml::Reader::from_str(&self.text[skipped..]);
         let config = reader.config_mut();
-        // Nesting is judged here, where the place of the opening tag is known.
+        // Nesting is checked here, where the place of the opening tag is known.
         config.check_end_names = false;
         config.allow_unmatched_ends = true;
         config.allow_dangling_amp = true;
@@ -83,8 +83,8 @@ impl<'t> DocumentReader<'t, '_> {
                 Ok(Event::Eof) => break,
                 Ok(Event::Start(_)) => self.start(span, true),
                 Ok(Event::Empty(_)) => self.start(span, false),
-                // This number of problems is enough, and the search for the intended name costs time.
-                Ok(Event::End(_)) if self.wrong_ends > MOST_PROBLEMS => break,
+                // Enough problems are reported, and the search for an intended name costs time.
+                Ok(Event::End(_)) if self.wrong_ends > MAX_PROBLEMS => break,
                 Ok(Event::End(_)) => self.end(span),
                 Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => self.stray = was_stray,
                 Ok(Event::Text(_) | Event::CData(_) | Event::GeneralRef(_)) => self.report_stray_text(span, was_stray),
@@ -104,7 +104,8 @@ impl<'t> DocumentReader<'t, '_> {
         self.document
     }
 
-    /// Reports an element that is still open at the end. Only the innermost is reported; the others may follow from it.
+    /// Reports an element that is still open at the end. Only the innermost is reported, because the others may follow
+    /// from it.
     fn finish(&mut self) {
         if let Some(open) = self.open.last() {
             if !self.document.broken {
@@ -132,7 +133,7 @@ impl<'t> DocumentReader<'t, '_> {
         if declares {
             self.report.error(|| {
                 Problem::new(span, "a document type with declarations, which the original ignores")
-                    .help("remove it and write out what it declares")
+                    .help("remove it and write its declarations out")
             });
         }
     }
@@ -169,7 +170,7 @@ impl<'t> DocumentReader<'t, '_> {
             2.. if self.in_scene => self.report_nested(name, &name_span),
             _ => {}
         }
-        // `/ >` is complained about as an attribute; it was meant to be the end of the element.
+        // `/ >` is reported as an attribute, but was meant to end the element.
         if opens && !inner.trim_ascii_end().ends_with('/') {
             self.open.push(OpenElement { name, span: name_span, complained: false });
         } else if self.open.is_empty() {
@@ -177,7 +178,7 @@ impl<'t> DocumentReader<'t, '_> {
         }
     }
 
-    /// Warns where the original joins lines: a name that is followed by a line feed only is joined with the next word.
+    /// Warns if the original joins lines: it joins a name that is followed only by a line feed with the next word.
     fn report_glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
         let behind = inner[name.len()..].trim_start_matches('\n');
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
@@ -207,14 +208,14 @@ impl<'t> DocumentReader<'t, '_> {
                 (_, true) => (format!("a second root element `{}`", quote(name)), "only the first `scene` counts"),
                 (_, false) => (
                     format!("the root element is `{}`, not `scene`", quote(name)),
-                    "put everything into one element `scene`",
+                    "put all elements into one element `scene`",
                 ),
             };
             self.report.error(|| Problem::from_element(name, span, message).help(help));
         } else if !self.in_scene {
             self.report.error(|| {
                 Problem::from_element(name, span, "a second `scene`")
-                    .help("only the first one counts; move its elements there or to a file of their own")
+                    .help("only the first one counts; move its elements there or to another file")
             });
         }
         static SCENE: Rule = Rule { name: "scene", attributes: &[] };
@@ -246,7 +247,7 @@ impl<'t> DocumentReader<'t, '_> {
             self.document.tags.push(tag);
             return;
         }
-        // The search for a similar name is not free, so only shown problems get one.
+        // The search for a similar name takes time, so only displayed problems get a suggestion.
         let meant = &mut self.document.meant;
         self.report.error(|| {
             let similar = grammar::similar_element(name);
@@ -260,9 +261,9 @@ impl<'t> DocumentReader<'t, '_> {
 
     fn end(&mut self, span: Range<usize>) {
         let name = self.text[span.start + 2..span.end - 1].trim_ascii_end();
-        // The greatest depth; otherwise a file of wrong closing tags would take forever.
-        const DEEPEST: usize = 64;
-        let known = self.open.iter().rev().take(DEEPEST).position(|open| open.name == name);
+        // The maximum depth of nesting. Without a limit, a file of wrong closing tags would take too long.
+        const MAX_DEPTH: usize = 64;
+        let known = self.open.iter().rev().take(MAX_DEPTH).position(|open| open.name == name);
         match (known, self.open.last()) {
             (Some(0), _) => {}
             (Some(above), Some(last)) => {
@@ -297,11 +298,11 @@ impl<'t> DocumentReader<'t, '_> {
 
 fn syntax_words(error: SyntaxError) -> (String, Option<String>) {
     let (message, help) = match error {
-        SyntaxError::InvalidBangMarkup => ("`<!` starts neither a comment nor anything else known", "`<!-- ... -->`"),
+        SyntaxError::InvalidBangMarkup => ("`<!` does not start a known construct", "`<!-- ... -->`"),
         SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl => ("`<?` without `?>`", "end it with `?>`"),
         SyntaxError::UnclosedComment => ("a comment without end", "end it with `-->`"),
-        SyntaxError::UnclosedDoctype => ("a document type without end", "end it with `>`"),
-        SyntaxError::UnclosedCData => ("a CDATA section without end", "end it with `]]>`"),
+        SyntaxError::UnclosedDoctype => ("a document type without its end", "end it with `>`"),
+        SyntaxError::UnclosedCData => ("a CDATA section without its end", "end it with `]]>`"),
         SyntaxError::UnclosedTag => ("a tag without end", "end it with `>` or `/>`"),
         SyntaxError::UnclosedSingleQuotedAttributeValue | SyntaxError::UnclosedDoubleQuotedAttributeValue => {
             ("a quotation mark is missing in this tag or after it", "close every value")

@@ -1,9 +1,9 @@
-//! Elements as a file has them.
+//! Elements as written in a file.
 use super::model::Color;
 use fosssim_num::vector::Vec2;
 use std::fmt;
 
-/// An element and its attributes so far.
+/// An element with the attributes added so far.
 pub(super) struct Element(String);
 
 impl Element {
@@ -11,39 +11,39 @@ impl Element {
         Self(format!("<{name}"))
     }
 
-    /// Returns an attribute whose value needs no references.
+    /// Adds an attribute whose value needs no character references.
     pub(super) fn with(mut self, name: &str, value: impl fmt::Display) -> Self {
         self.0 += &format!(r#" {name}="{value}""#);
         self
     }
 
-    /// Returns a number in its shortest form, with an exponent where that is shorter.
+    /// Adds a number in its shortest form, with an exponent if that is shorter.
     pub(super) fn number(self, name: &str, value: f64) -> Self {
         let written = format!("{value:?}");
         self.with(name, written.strip_suffix(".0").unwrap_or(&written))
     }
 
-    /// Returns two numbers.
+    /// Adds two numbers.
     pub(super) fn vector(self, x: &str, y: &str, value: Vec2) -> Self {
         self.number(x, value.x).number(y, value.y)
     }
 
-    /// Returns a color's three attributes.
+    /// Adds a color's three attributes.
     pub(super) fn color(self, Color { red, green, blue }: Color) -> Self {
         self.number("r", red).number("g", green).number("b", blue)
     }
 
-    /// Returns the index of an edge.
+    /// Adds the index of an edge.
     pub(super) fn edge(self, name: &str, index: usize) -> Self {
         self.with(name, index)
     }
 
-    /// Returns the index of a particle.
+    /// Adds the index of a particle.
     pub(super) fn particle(self, name: &str, index: usize) -> Self {
         self.with(name, index)
     }
 
-    /// Returns any text. White space other than the space is written as references, since line feeds vanish in the
+    /// Adds any text. White space other than the space is written as references, because line feeds vanish in the
     /// original and other programs change the rest.
     pub(super) fn text(self, name: &str, text: &str) -> Self {
         let mut value = String::new();

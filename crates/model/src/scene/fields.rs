@@ -1,13 +1,13 @@
 //! Typed reading of an element's attributes, with a problem for each value that cannot be read.
 //!
-//! A method that returns nothing has reported the reason, or knows that it was reported.
+//! If a method returns `None`, the problem has been reported.
 use std::{borrow::Cow, ops::Range};
 
 use quick_xml::escape::{EscapeError, unescape};
 
 use super::grammar;
 use super::model::Color;
-use super::numbers::{self, Flaw};
+use super::numbers::{self, NumberError};
 use super::problem::{Problem, Report, Severity, quote};
 use super::tag::{Attribute, Tag, list};
 use fosssim_num::vector::Vec2;
@@ -15,10 +15,10 @@ use fosssim_num::vector::Vec2;
 /// The number of objects of a kind, for indices that point to them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Count {
-    /// The name of such an object: `particle`.
+    /// The name of one such object, such as `particle`.
     pub(super) what: &'static str,
     pub(super) count: usize,
-    /// Whether the number is certain; after broken XML or a misspelt element it is not, and indices are not judged.
+    /// Whether the number is certain. After broken XML or a misspelt element it is not, and indices are not checked.
     pub(super) certain: bool,
 }
 
@@ -30,8 +30,8 @@ pub(super) struct TagFields<'d, 't, 'r> {
 }
 
 impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
-    /// Creates the reader of an element's attributes; `number` is the element's number among its kind, when there may
-    /// be several.
+    /// Creates the reader of an element's attributes. `number` is the element's number among its kind, if there may be
+    /// several.
     pub(super) fn new(tag: &'d Tag<'t>, number: Option<usize>, report: &'r mut Report) -> Self {
         Self { tag, number, report }
     }
@@ -40,7 +40,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.raw(name).is_some()
     }
 
-    /// Returns the place of an attribute's value, or of the element when it has no such attribute.
+    /// Returns the place of an attribute's value, or of the element if the attribute is missing.
     pub(super) fn span(&self, name: &str) -> Range<usize> {
         self.raw(name).map_or_else(|| self.tag.span.clone(), |attribute| attribute.span.clone())
     }
@@ -62,12 +62,12 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Reports a warning about an attribute's value, which is shown as written.
-    pub(super) fn warn_of_odd(&mut self, name: &str, help: impl Into<String>) {
+    pub(super) fn warn_bad(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
         self.complain(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
-    /// Reports a problem, whose words are made only if there is room for them.
+    /// Reports a problem, whose text is created only if the report has room for it.
     fn complain(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
         self.report.add(severity, || {
@@ -98,7 +98,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         if self.has(name) { self.text(name, "").map(Some) } else { Some(None) }
     }
 
-    /// Returns a name from a list.
+    /// Returns the choice named by the attribute.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let attribute = self.require(name, &list(&names))?;
@@ -140,7 +140,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         let text = self.one_line(attribute)?;
         match numbers::integer(&text) {
             Ok(value) => Some(value),
-            Err(flaw) => self.flaw(name, &text, flaw),
+            Err(error) => self.report_number(name, &text, error),
         }
     }
 
@@ -197,7 +197,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.tag.attributes.iter().find(|attribute| attribute.name == name)
     }
 
-    /// Returns a required attribute. Its absence is not reported when it may be there, misspelt or unreadable.
+    /// Returns a required attribute. Its absence is not reported if it may be misspelt or unreadable.
     fn require(&mut self, name: &str, what: &str) -> Option<&'d Attribute<'t>> {
         let attribute = self.raw(name);
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
@@ -211,7 +211,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         attribute
     }
 
-    /// Returns the value as the original sees it: lines joined, references translated.
+    /// Returns the value as the original reads it: lines joined, references translated.
     fn decode(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let joined: Cow<'d, str> = if attribute.value.contains('\n') {
             attribute.value.replace('\n', "").into()
@@ -241,7 +241,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         }
     }
 
-    /// Returns the text of a number, which must not be broken over lines.
+    /// Returns the text of a number, which must be on one line.
     fn one_line(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let text = self.decode(attribute)?;
         if attribute.value.trim_ascii().contains('\n') {
@@ -262,17 +262,17 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
                 }
                 Some(value)
             }
-            Err(flaw) => self.flaw(attribute.name, &text, flaw),
+            Err(error) => self.report_number(attribute.name, &text, error),
         }
     }
 
-    fn flaw<T>(&mut self, name: &str, text: &str, flaw: Flaw) -> Option<T> {
-        self.complain(Severity::Error, name, || describe_flaw(text, &flaw));
+    fn report_number<T>(&mut self, name: &str, text: &str, error: NumberError) -> Option<T> {
+        self.complain(Severity::Error, name, || describe_error(text, &error));
         None
     }
 }
 
-/// Returns `particle 3`, or `integrator`.
+/// Returns the name of an element for messages, such as `particle 3` or `integrator`.
 fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
     match number {
         Some(number) => format!("{} {number}", tag.rule.name),
@@ -280,20 +280,21 @@ fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
     }
 }
 
-/// Returns the message about a bad number: its flaw, and the remedy.
-fn describe_flaw(text: &str, flaw: &Flaw) -> (String, String) {
+/// Returns the message about a bad number: its error, and the remedy.
+fn describe_error(text: &str, error: &NumberError) -> (String, String) {
+    use NumberError::{Comma, Empty, NoNumber, NotFinite, NotWhole, Overflow, TooLarge, Trailing};
     let text = quote(text.trim_ascii());
-    match flaw {
-        Flaw::Empty => ("is empty".to_owned(), "write a number".to_owned()),
-        Flaw::NoNumber => (format!("must be a number, not `{text}`"), "write a number such as `-1.5e-3`".to_owned()),
-        Flaw::Trailing(prefix) => (
+    match error {
+        Empty => ("is empty".to_owned(), "write a number".to_owned()),
+        NoNumber => (format!("must be a number, not `{text}`"), "write a number such as `-1.5e-3`".to_owned()),
+        Trailing(prefix) => (
             format!("is `{text}`, which is more than a number"),
             format!("the original reads `{}` and ignores the rest", quote(prefix)),
         ),
-        Flaw::Comma(point) => (format!("is `{text}`, with a decimal comma"), format!("write `{}`", quote(point))),
-        Flaw::NotFinite => (format!("is `{text}`"), "only finite numbers are allowed".to_owned()),
-        Flaw::Overflow => (format!("is `{text}`, too large"), "the largest 64-bit number is 1.8e308".to_owned()),
-        Flaw::NotWhole => (format!("is `{text}`"), "write a whole number".to_owned()),
-        Flaw::TooLarge => (format!("is `{text}`, beyond 32 bits"), "allowed is -2147483648 to 2147483647".to_owned()),
+        Comma(point) => (format!("is `{text}`, with a decimal comma"), format!("write `{}`", quote(point))),
+        NotFinite => (format!("is `{text}`"), "only finite numbers are allowed".to_owned()),
+        Overflow => (format!("is `{text}`, too large"), "the largest 64-bit number is 1.8e308".to_owned()),
+        NotWhole => (format!("is `{text}`"), "write a whole number".to_owned()),
+        TooLarge => (format!("is `{text}`, beyond 32 bits"), "allowed is -2147483648 to 2147483647".to_owned()),
     }
 }

@@ -1,19 +1,19 @@
-//! The table of forces: the name of an element, its attributes, and their meaning.
+//! The table of forces: each force's element, its attributes, and their meaning.
 //!
-//! Both readers, the grammar, the writer and every viewer of a force use it. A force without a row does not compile.
+//! The two readers, the grammar, the writer and the viewers of forces use it. A force without a row does not compile.
 use super::{element::Element, model::Force, rule::Rule};
 use crate::assignments::ForceKind;
 use fosssim_num::vector::Vec2;
 
-/// The attributes of one element, as a reader takes them.
+/// Provides the attributes of one element to a reader.
 pub(super) trait Source {
-    /// The reason why an attribute can't be used.
+    /// The reason why an attribute cannot be used.
     type Error;
     /// Returns the index of an edge.
     fn edge(&mut self, name: &'static str) -> Result<usize, Self::Error>;
     /// Returns the index of a particle.
     fn particle(&mut self, name: &'static str) -> Result<usize, Self::Error>;
-    /// Returns a number with its default, if it has one, and the odd effect of a negative one.
+    /// Returns a number with its default, if it has one, and the unexpected effect of a negative value.
     fn number(&mut self, name: &'static str, default: Option<f64>, odd: Option<&str>) -> Result<f64, Self::Error>;
     /// Returns two numbers.
     fn vector(&mut self, x: &'static str, y: &'static str) -> Result<Vec2, Self::Error> {
@@ -25,13 +25,13 @@ pub(super) trait Source {
 macro_rules! forces {
     ($($kind:ident $element:literal { $($field:ident: $part:ident($($name:literal),+ $(; $($rule:expr),+)?)),+ })+) => {
         impl ForceKind {
-            /// Returns the name of its element.
+            /// Returns the name of the force's element.
             #[must_use]
             pub const fn element(self) -> &'static str {
                 match self { $(Self::$kind => $element),+ }
             }
 
-            /// Reads the force that an element describes. All attributes are read before the first error is returned.
+            /// Reads the force of an element. All attributes are read before the first error is returned.
             pub(super) fn read<S: Source>(self, source: &mut S) -> Result<Force, S::Error> {
                 match self {
                     $(Self::$kind => {

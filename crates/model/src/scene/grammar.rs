@@ -1,4 +1,4 @@
-//! The names that a scene may use, and the one that was probably meant (scene-format.md 4, 5).
+//! The names that a scene may use, and suggestions for misspelt ones (scene-format.md 4, 5).
 use super::{forces, rule::Rule};
 
 const fn element(name: &'static str, attributes: &'static [&'static str]) -> Rule {
@@ -24,7 +24,7 @@ static OTHERS: [Rule; 19] = [
     element("edgecolor", &["i", "r", "g", "b"]),
     element("halfplanecolor", &["i", "r", "g", "b"]),
     element("particlepath", &["i", "duration", "r", "g", "b"]),
-    // Known only so that the stub's elements are rejected in words of their own.
+    // Known only so that the rigid-body stub's elements are rejected with a specific message.
     element("rigidbody", &["p", "r"]),
     element("rigidbodyvertex", &["x", "y", "m"]),
 ];
@@ -33,7 +33,7 @@ fn rules() -> impl Iterator<Item = &'static Rule> {
     OTHERS.iter().chain(forces::RULES)
 }
 
-/// Returns the rule for an element of this name.
+/// Returns the rule for the element `name`.
 pub(super) fn rule(name: &str) -> Option<&'static Rule> {
     rules().find(|rule| rule.name == name)
 }
@@ -43,7 +43,7 @@ pub(super) fn similar_element(name: &str) -> Option<&'static str> {
     closest(name, rules().map(|rule| rule.name))
 }
 
-/// Names that many people write for a name of the format.
+/// Names that many people write instead of a name of the format.
 const HABITS: [(&str, &str); 8] = [
     ("mass", "m"),
     ("x", "px"),
@@ -55,21 +55,21 @@ const HABITS: [(&str, &str); 8] = [
     ("vortex", "vortexforce"),
 ];
 
-/// Returns the candidate that `word` probably means: the same except for case and punctuation, a customary other name,
-/// the beginning of it, or few slips away (a third of its letters, at most two).
+/// Returns the candidate that `word` probably means: equal except for case and punctuation, a common alternative name,
+/// an abbreviation, or within a few typos (a third of the letters, at most two).
 #[must_use]
 pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
-    const LONGEST: usize = 40;
-    if word.len() > LONGEST {
+    const MAX_LETTERS: usize = 40;
+    if word.len() > MAX_LETTERS {
         return None;
     }
     let plain = to_plain(word);
     let habit = HABITS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
     candidates
-        .filter(|candidate| candidate.len() <= LONGEST)
+        .filter(|candidate| candidate.len() <= MAX_LETTERS)
         .filter_map(|candidate| {
             let other = self::to_plain(candidate);
-            // The beginning of a name is as good as one slip.
+            // The beginning of a name is as good as a name with one typo.
             let begins = plain.len() >= 3 && other.starts_with(&plain);
             let distance = match habit {
                 Some(name) if name == candidate => 0,
@@ -83,7 +83,7 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
         .map(|(_, candidate)| candidate)
 }
 
-/// Keeps letters, in lower case, and digits only.
+/// Returns the letters, in lower case, and the digits of a word.
 fn to_plain(word: &str) -> String {
     word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }

@@ -1,13 +1,13 @@
-//! The scene as the simulator needs it: plain values, every index valid when it comes from the strict reader.
+//! The scene for the simulator: plain values. Every index is valid if the strict reader read the scene.
 use crate::assignments::{Assignment, CollisionType, Handling, Integrator};
 use fosssim_num::vector::Vec2;
 
 /// A scene: the bodies, the duration, the integrator and the collision handling.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Simulated time in seconds.
+    /// The simulated time in seconds.
     pub duration: f64,
-    /// Time step `dt` in seconds.
+    /// The time step `dt` in seconds.
     pub time_step: f64,
     /// The time integrator.
     pub integrator: Integrator,
@@ -22,7 +22,7 @@ pub struct Scene {
     /// Forces **in the order in which they act**: springs, simple gravity, gravitation, constant, drag, vortex; each
     /// kind in document order (simulation.md 2).
     pub forces: Vec<Force>,
-    /// The text shown in the banner, if the scene has one.
+    /// The text of the banner, if the scene has one.
     pub description: Option<String>,
     /// The values that only a display uses.
     pub display: Display,
@@ -34,7 +34,7 @@ impl Scene {
     #[must_use]
     pub fn steps(&self) -> u32 {
         let quotient = (self.duration / self.time_step).ceil();
-        // Outside the 32-bit range (and for NaN) the processor's conversion gives -2147483648, hence no step.
+        // Outside the 32-bit range (and for NaN) the processor's conversion gives -2147483648, so there are no steps.
         if quotient >= 1.0 && quotient <= f64::from(i32::MAX) {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked just above")]
             let steps = quotient as u32;
@@ -48,42 +48,43 @@ impl Scene {
 /// Collision handling (collisions.md).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Collision {
-    /// No handling, records of positions and velocities only.
+    /// No handling; records hold only positions and velocities.
     None,
     /// Impulses on overlap at the end of the step.
     Simple {
-        /// Coefficient of restitution (`COR`).
+        /// The coefficient of restitution (`COR`).
         restitution: f64,
     },
     /// A repelling force.
     Penalty {
-        /// `k`, force per length.
+        /// The stiffness `k`, force per length.
         stiffness: f64,
-        /// `thickness`, length.
+        /// The thickness of the layer (`thickness`), a length.
         thickness: f64,
         /// The way to find the pairs that repel each other.
         detection: CollisionDetection,
     },
     /// Continuous-time detection, one pass.
     ContinuousTime {
-        /// Coefficient of restitution (`COR`).
+        /// The coefficient of restitution (`COR`).
         restitution: f64,
     },
     /// Impulses, impact zones, rigid failsafe, and the penalty force.
     Hybrid {
-        /// Coefficient of restitution (`COR`).
+        /// The coefficient of restitution (`COR`).
         restitution: f64,
-        /// `maxiters`; zero or negative means no detection in the impulse stage.
+        /// The maximum number of impulse rounds (`maxiters`); zero or negative means that the impulse stage detects
+        /// nothing.
         max_iterations: i32,
-        /// `k` of the penalty force.
+        /// The stiffness `k` of the penalty force.
         stiffness: f64,
-        /// `thickness` of the penalty force.
+        /// The thickness of the penalty force's layer (`thickness`).
         thickness: f64,
     },
 }
 
 impl Collision {
-    /// Returns the handling's type, without the numbers.
+    /// Returns the collision type, without the numbers.
     #[must_use]
     pub const fn kind(&self) -> CollisionType {
         match self {
@@ -106,10 +107,10 @@ impl Collision {
         }
     }
 
-    /// Returns the handling that its assignment requires of a program.
+    /// Returns the handling that the scene's assignment requires of a program.
     ///
     /// # Panics
-    /// Never: a test checks that every type is handled by its assignment.
+    /// Never; a test checks that every type is handled by its assignment.
     #[must_use]
     pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();
@@ -121,36 +122,36 @@ impl Collision {
 /// (simulation.md 3). Other collision handling always checks all pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CollisionDetection {
-    /// `all-pairs`, also the default: in the order of a detection pass.
+    /// All pairs in the order of a detection pass (`all-pairs`, the default).
     #[default]
     AllPairs,
-    /// `contest`, in Theme 2, Milestone 3: in the order of a sweep along x.
+    /// Near pairs in the order of a sweep along x (`contest`, Theme 2, Milestone 3).
     Contest,
 }
 
-/// A particle: a disc with a mass.
+/// A particle, which is a disc with a mass.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Particle {
-    /// Center at the start.
+    /// The center at the start.
     pub position: Vec2,
-    /// Velocity at the start.
+    /// The velocity at the start.
     pub velocity: Vec2,
-    /// Mass.
+    /// The particle's mass.
     pub mass: f64,
-    /// Whether forces and responses leave it alone (its own velocity still moves it).
+    /// Whether forces and responses do not affect the particle; its own velocity still moves it.
     pub fixed: bool,
-    /// Radius of the disc.
+    /// The radius of the disc.
     pub radius: f64,
-    /// A name without effect.
+    /// A name without effect on the simulation.
     pub tag: Option<String>,
 }
 
 /// An edge between two particles.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Edge {
-    /// Index of the first endpoint (`i`).
+    /// The index of the first endpoint (`i`).
     pub first: usize,
-    /// Index of the second endpoint (`j`).
+    /// The index of the second endpoint (`j`).
     pub second: usize,
     /// Half the edge's thickness.
     pub radius: f64,
@@ -168,72 +169,72 @@ pub struct HalfPlane {
 /// A force (simulation.md 3).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Force {
-    /// `springforce`
+    /// A damped spring (`springforce`).
     Spring {
-        /// Index of the edge it acts on.
+        /// The index of the edge that the spring acts on.
         edge: usize,
-        /// `k`
+        /// The stiffness (`k`).
         stiffness: f64,
-        /// `l0`
+        /// The length at rest (`l0`).
         rest_length: f64,
-        /// `b`
+        /// The damping (`b`).
         damping: f64,
     },
-    /// `simplegravity`
+    /// A uniform gravity (`simplegravity`).
     SimpleGravity {
-        /// `(fx, fy)`
+        /// The acceleration of every particle (`fx`, `fy`).
         acceleration: Vec2,
     },
-    /// `gravitationalforce`
+    /// The attraction of two particles (`gravitationalforce`).
     Gravitation {
-        /// `i`
+        /// The first particle (`i`).
         first: usize,
-        /// `j`
+        /// The second particle (`j`).
         second: usize,
-        /// `G`
+        /// The gravitational constant (`G`).
         constant: f64,
     },
-    /// `constantforce`
+    /// A constant force (`constantforce`).
     Constant {
-        /// `(fx, fy)`, on every particle
+        /// The force on every particle (`fx`, `fy`).
         force: Vec2,
     },
-    /// `dragdamping`
+    /// A linear drag (`dragdamping`).
     Drag {
-        /// `b`
+        /// The drag coefficient (`b`).
         coefficient: f64,
     },
-    /// `vortexforce`
+    /// A vortex of two particles (`vortexforce`).
     Vortex {
-        /// `i`
+        /// The first particle (`i`).
         first: usize,
-        /// `j`
+        /// The second particle (`j`).
         second: usize,
-        /// `kbs`
+        /// The strength (`kbs`).
         strength: f64,
-        /// `kvc`
+        /// The coupling (`kvc`).
         coupling: f64,
     },
 }
 
-/// The values that only a display uses; kept so that a scene survives being read and written.
+/// The values that only a display uses. They are kept so that a scene can be read and written without loss.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Display {
-    /// `maxsimfreq max`, steps per second of wall time.
+    /// The maximum number of steps per second of wall time (`maxsimfreq max`).
     pub max_frequency: Option<f64>,
-    /// `viewport`
+    /// The visible part of the plane (`viewport`).
     pub viewport: Option<Viewport>,
-    /// `backgroundcolor`
+    /// The background color (`backgroundcolor`).
     pub background: Option<Color>,
-    /// `scenetag tag`
+    /// The scene's tag (`scenetag tag`).
     pub tag: Option<String>,
-    /// `particlecolor`: particle and color, in document order.
+    /// Pairs of particle and color, in document order (`particlecolor`).
     pub particle_colors: Vec<(usize, Color)>,
-    /// `edgecolor`: edge and color, in document order.
+    /// Pairs of edge and color, in document order (`edgecolor`).
     pub edge_colors: Vec<(usize, Color)>,
-    /// `halfplanecolor`: half-plane and color, in document order.
+    /// Pairs of half-plane and color, in document order (`halfplanecolor`).
     pub half_plane_colors: Vec<(usize, Color)>,
-    /// `particlepath`
+    /// The trails of particles (`particlepath`).
     pub paths: Vec<ParticlePath>,
 }
 
@@ -242,27 +243,27 @@ pub struct Display {
 pub struct Viewport {
     /// The viewport's center.
     pub center: Vec2,
-    /// Half its extent; zero or negative means "fit".
+    /// Half of the viewport's extent; zero or negative means "fit".
     pub size: f64,
 }
 
-/// A color, components in [0, 1].
+/// A color with components in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Color {
-    /// Red.
+    /// The red component.
     pub red: f64,
-    /// Green.
+    /// The green component.
     pub green: f64,
-    /// Blue.
+    /// The blue component.
     pub blue: f64,
 }
 
 /// A trail behind a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticlePath {
-    /// The particle.
+    /// The index of the particle.
     pub particle: usize,
-    /// The time that the trail lasts, seconds.
+    /// The duration of the trail, in seconds.
     pub duration: f64,
     /// The path's color.
     pub color: Color,

@@ -1,39 +1,39 @@
-//! Numbers as the strict reader wants them: the whole text must be one.
+//! Numbers for the strict reader: the whole text must be a number.
 //!
-//! Where the original takes the longest prefix and ignores the rest (scene-format.md 2), messages name what the
-//! original would have read. White space around a number is allowed.
+//! If the original reads the longest prefix and ignores the rest (scene-format.md 2), messages name what the original
+//! would have read. White space around a number is allowed.
 
-/// A flaw of a number.
+/// The reason why a text is not a valid number.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Flaw {
-    /// Nothing there.
+pub(super) enum NumberError {
+    /// The text is empty.
     Empty,
-    /// No digits at the start.
+    /// The text does not start with digits.
     NoNumber,
-    /// A number, then something else; with the number that the original would read.
+    /// Other characters follow the number. Holds the number that the original would read.
     Trailing(String),
-    /// A decimal comma; the same with a point.
+    /// The number has a decimal comma. Holds the text with a point.
     Comma(String),
-    /// `inf` or `nan`.
+    /// The text is `inf` or `nan`.
     NotFinite,
-    /// Too large for a 64-bit float.
+    /// The number is too large for a 64-bit float.
     Overflow,
-    /// A number with a point or an exponent where a whole one is needed.
+    /// The number has a point or an exponent where a whole number is required.
     NotWhole,
-    /// A whole number outside the 32-bit range.
+    /// The whole number is outside the 32-bit range.
     TooLarge,
 }
 
-/// Returns a finite 64-bit float, and whether a number other than zero became zero.
-pub(super) fn scalar(text: &str) -> Result<(f64, bool), Flaw> {
+/// Returns a finite 64-bit float, and whether a nonzero number became zero.
+pub(super) fn scalar(text: &str) -> Result<(f64, bool), NumberError> {
     let text = text.trim_ascii();
     let length = shape(text);
     if length < text.len() || text.is_empty() {
         return Err(flaw(text, length));
     }
-    let value: f64 = text.parse().map_err(|_| Flaw::NoNumber)?;
+    let value: f64 = text.parse().map_err(|_| NumberError::NoNumber)?;
     if value.is_infinite() {
-        return Err(Flaw::Overflow);
+        return Err(NumberError::Overflow);
     }
     let mantissa = text.split(['e', 'E']).next().unwrap_or_default();
     let vanished = value == 0.0 && mantissa.bytes().any(|byte| matches!(byte, b'1'..=b'9'));
@@ -41,37 +41,37 @@ pub(super) fn scalar(text: &str) -> Result<(f64, bool), Flaw> {
 }
 
 /// Returns a whole 32-bit number.
-pub(super) fn integer(text: &str) -> Result<i32, Flaw> {
+pub(super) fn integer(text: &str) -> Result<i32, NumberError> {
     let text = text.trim_ascii();
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     if !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()) {
-        return text.parse().map_err(|_| Flaw::TooLarge);
+        return text.parse().map_err(|_| NumberError::TooLarge);
     }
     Err(match scalar(text) {
-        Ok(_) => Flaw::NotWhole,
+        Ok(_) => NumberError::NotWhole,
         Err(flaw) => flaw,
     })
 }
 
-fn flaw(text: &str, length: usize) -> Flaw {
+fn flaw(text: &str, length: usize) -> NumberError {
     let bare = text.strip_prefix(['+', '-']).unwrap_or(text).to_ascii_lowercase();
     if text.is_empty() {
-        Flaw::Empty
+        NumberError::Empty
     } else if bare.starts_with("inf") || bare.starts_with("nan") {
-        Flaw::NotFinite
+        NumberError::NotFinite
     } else if length == 0 {
-        Flaw::NoNumber
+        NumberError::NoNumber
     } else {
         let with_point = text.replacen(',', ".", 1);
         if text[length..].starts_with(',') && shape(&with_point) == text.len() {
-            Flaw::Comma(with_point)
+            NumberError::Comma(with_point)
         } else {
-            Flaw::Trailing(text[..length].to_owned())
+            NumberError::Trailing(text[..length].to_owned())
         }
     }
 }
 
-/// Returns the number of bytes at the start that have the shape of a number; 0 without digits.
+/// Returns the number of leading bytes that have the form of a number; 0 without digits.
 fn shape(text: &str) -> usize {
     let bytes = text.as_bytes();
     let Some(end) = mantissa(bytes) else { return 0 };
@@ -85,7 +85,7 @@ fn shape(text: &str) -> usize {
     end
 }
 
-/// Returns the places at which a number's sign, digits and fraction end; `None` without digits.
+/// Returns the offsets at which a number's sign, digits and fraction end; `None` without digits.
 pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let whole = digits(text, sign);
@@ -116,26 +116,26 @@ mod tests {
     #[test]
     fn every_flaw_has_its_name() {
         for (text, flaw) in [
-            ("", Flaw::Empty),
-            (" \n", Flaw::Empty),
-            ("x", Flaw::NoNumber),
-            ("-", Flaw::NoNumber),
-            (".", Flaw::NoNumber),
-            ("1.5 m", Flaw::Trailing("1.5".into())),
-            ("1e", Flaw::Trailing("1".into())),
-            ("0x10", Flaw::Trailing("0".into())),
-            ("1,5", Flaw::Comma("1.5".into())),
-            ("1,5,2", Flaw::Trailing("1".into())),
-            ("-Infinity", Flaw::NotFinite),
-            ("NaN", Flaw::NotFinite),
-            ("-1e400", Flaw::Overflow),
-            ("é", Flaw::NoNumber),
+            ("", NumberError::Empty),
+            (" \n", NumberError::Empty),
+            ("x", NumberError::NoNumber),
+            ("-", NumberError::NoNumber),
+            (".", NumberError::NoNumber),
+            ("1.5 m", NumberError::Trailing("1.5".into())),
+            ("1e", NumberError::Trailing("1".into())),
+            ("0x10", NumberError::Trailing("0".into())),
+            ("1,5", NumberError::Comma("1.5".into())),
+            ("1,5,2", NumberError::Trailing("1".into())),
+            ("-Infinity", NumberError::NotFinite),
+            ("NaN", NumberError::NotFinite),
+            ("-1e400", NumberError::Overflow),
+            ("é", NumberError::NoNumber),
         ] {
             assert_eq!(scalar(text), Err(flaw), "{text}");
         }
-        assert_eq!(integer("1.0"), Err(Flaw::NotWhole));
-        assert_eq!(integer("2147483648"), Err(Flaw::TooLarge));
-        assert_eq!(integer("99999999999999999999"), Err(Flaw::TooLarge));
-        assert_eq!(integer("3x"), Err(Flaw::Trailing("3".into())));
+        assert_eq!(integer("1.0"), Err(NumberError::NotWhole));
+        assert_eq!(integer("2147483648"), Err(NumberError::TooLarge));
+        assert_eq!(integer("99999999999999999999"), Err(NumberError::TooLarge));
+        assert_eq!(integer("3x"), Err(NumberError::Trailing("3".into())));
     }
 }

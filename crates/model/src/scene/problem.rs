@@ -1,34 +1,34 @@
-//! Problems of a scene: the fault, its place, and what would be right.
+//! The problems of a scene: the fault, its place, and a correction.
 use std::{fmt, ops::Range};
 
-/// At most this many errors, and as many warnings, are kept of one scene; the rest is only counted.
-pub const MOST_PROBLEMS: usize = 200;
+/// The maximum number of errors, and of warnings, that are kept for one scene; further ones are only counted.
+pub const MAX_PROBLEMS: usize = 200;
 
 /// The severity of a problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The scene is rejected.
     Error,
-    /// The scene loads, but probably does not mean what its author thinks.
+    /// The scene loads, but probably differs from its author's intention.
     Warning,
 }
 
 /// One problem of a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problem {
-    /// Error or warning.
+    /// Whether the problem is an error or a warning.
     pub severity: Severity,
-    /// Line of the place, from 1.
+    /// The line of the problem, from 1.
     pub line: usize,
-    /// Column of the place, from 1, in characters.
+    /// The column of the problem in characters, from 1.
     pub column: usize,
-    /// The bytes of the file that it is about; may be empty.
+    /// The bytes of the file that the problem is about; may be empty.
     pub span: Range<usize>,
-    /// The element that it is about.
+    /// The element that the problem is about.
     pub element: Option<String>,
-    /// The attribute that it is about.
+    /// The attribute that the problem is about.
     pub attribute: Option<String>,
-    /// The fault, as a lowercase fragment.
+    /// The fault, as a lowercase phrase.
     pub message: String,
     /// The allowed values, or the remedy.
     pub help: Option<String>,
@@ -46,26 +46,26 @@ impl fmt::Display for Problem {
     }
 }
 
-/// The reason why a scene was rejected: its errors and warnings in the order of their places.
+/// The reason why a scene was rejected: its errors and warnings, in the order of their places.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Problems {
     /// The scene's name, as the caller gave it.
     pub source: String,
     /// The problems, at least one of them an error.
     pub list: Vec<Problem>,
-    /// The number of further problems that were found but not kept ([`MOST_PROBLEMS`]).
+    /// The number of further problems that were not kept ([`MAX_PROBLEMS`]).
     pub omitted: usize,
 }
 
 impl Problems {
-    /// Returns a rejection of the whole text, pointing to its start.
+    /// Returns a rejection of the whole text, with its start as the place.
     pub(super) fn whole(source: &str, message: String, help: &str) -> Self {
         Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).help(help)], omitted: 0 }
     }
 }
 
 impl fmt::Display for Problems {
-    /// Writes one problem a line, without the source's name and without a newline at the end.
+    /// Writes one problem per line, without the source's name and without a newline at the end.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (number, problem) in self.list.iter().enumerate() {
             let separator = if number == 0 { "" } else { "\n" };
@@ -80,14 +80,14 @@ impl fmt::Display for Problems {
 
 impl std::error::Error for Problems {}
 
-// In the making: an error at the start of the text, until the report knows better.
+// The initial state of a problem: an error at the start of the text. The report sets the rest.
 impl Problem {
     pub(super) fn new(span: Range<usize>, message: impl Into<String>) -> Self {
         let (severity, message) = (Severity::Error, message.into());
         Self { severity, line: 1, column: 1, span, element: None, attribute: None, message, help: None }
     }
 
-    /// Creates a problem of an element of this name.
+    /// Creates a problem of the element `element`.
     pub(super) fn from_element(element: &str, span: &Range<usize>, message: impl Into<String>) -> Self {
         Self { element: Some(quote(element)), ..Self::new(span.clone(), message) }
     }
@@ -105,8 +105,7 @@ impl Problem {
     }
 }
 
-/// Gathers problems. They are made only while there is room, so that a file full of rubbish costs no more than its
-/// length.
+/// Collects problems. They are created only while there is room, so the work is proportional to the file's length.
 #[derive(Debug, Default)]
 pub(super) struct Report {
     list: Vec<Problem>,
@@ -126,7 +125,7 @@ impl Report {
 
     pub(super) fn add(&mut self, severity: Severity, problem: impl FnOnce() -> Problem) {
         let kept = &mut self.kept[severity as usize];
-        if *kept < MOST_PROBLEMS {
+        if *kept < MAX_PROBLEMS {
             *kept += 1;
             self.list.push(Problem { severity, ..problem() });
         } else {
@@ -138,7 +137,8 @@ impl Report {
         self.kept[Severity::Error as usize] > 0
     }
 
-    /// Returns the problems in the order of their places, and the number of further ones. The spans refer to `text`.
+    /// Returns the problems in the order of their places, and the number of further problems. The spans refer to
+    /// `text`.
     pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
         self.list.sort_by_key(|problem| (problem.span.start, problem.severity));
         let mut place = Place::at_start(text);
@@ -149,7 +149,7 @@ impl Report {
     }
 }
 
-/// A sweep over the text that counts lines and characters once.
+/// A position in the text that moves forward and counts lines and characters.
 struct Place {
     at: usize,
     line: usize,
@@ -158,7 +158,7 @@ struct Place {
 
 impl Place {
     fn at_start(text: &[u8]) -> Self {
-        // A byte order mark takes no room on the screen.
+        // A byte order mark has no width on the screen.
         let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
         Self { at, line: 1, column: 1 }
     }
@@ -170,7 +170,7 @@ impl Place {
                 self.line += 1;
                 self.column = 1;
             } else if byte & 0xc0 != 0x80 {
-                // Every byte but the continuations of UTF-8 starts a character.
+                // Every byte except UTF-8 continuations starts a character.
                 self.column += 1;
             }
         }
@@ -179,13 +179,13 @@ impl Place {
     }
 }
 
-/// Returns a piece of the scene for a message: control characters escaped, cut when long.
+/// Returns a part of the scene for a message, with control characters escaped, and shortened if it is long.
 pub(super) fn quote(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let mut quoted: String = text.chars().take(LONGEST).flat_map(char::escape_debug).collect();
+    const MAX_SHOWN_CHARS: usize = 40;
+    let mut quoted: String = text.chars().take(MAX_SHOWN_CHARS).flat_map(char::escape_debug).collect();
     // Quotation marks need no escape between backquotes.
     quoted = quoted.replace("\\\"", "\"").replace("\\'", "'");
-    if text.chars().nth(LONGEST).is_some() {
+    if text.chars().nth(MAX_SHOWN_CHARS).is_some() {
         quoted.push_str("...");
     }
     quoted
@@ -210,12 +210,12 @@ mod tests {
     #[test]
     fn the_list_is_capped_and_the_rest_counted() {
         let mut report = Report::default();
-        for _ in 0..MOST_PROBLEMS + 3 {
+        for _ in 0..MAX_PROBLEMS + 3 {
             report.error(|| Problem::new(0..0, "e"));
         }
         report.warning(|| Problem::new(0..0, "w"));
         let (list, omitted) = report.finish(b"");
-        assert_eq!((list.len(), omitted), (MOST_PROBLEMS + 1, 3));
+        assert_eq!((list.len(), omitted), (MAX_PROBLEMS + 1, 3));
         let shown = Problems { source: String::new(), list, omitted }.to_string();
         assert!(shown.ends_with("1:1: warning: w\nand 3 more"), "{shown}");
     }

@@ -1,23 +1,23 @@
-//! The strict reader: a whole scene or all its problems together.
+//! The strict reader. It returns a whole scene or all its problems together.
 //!
-//! A scene that the original accepts silently and then simulates differently from what was written, or dies of, is an
-//! error here (scene-format.md 6). A scene without errors means the same to both readers; that is checked at the end,
-//! so that no oddity of the original's parser can slip through.
+//! A scene that the original accepts silently and then simulates differently from its text, or that crashes it, is an
+//! error here (scene-format.md 6). A scene without errors has the same meaning for both readers, which is checked at
+//! the end.
 use std::borrow::Cow;
 
 use super::model::Scene;
 use super::problem::{Problem, Problems, Report};
 use super::{checks, document, original, xml};
 
-/// The largest scene file that is read, in bytes.
-pub const LARGEST_SCENE: usize = 8 << 20;
+/// The maximum size of a scene file, in bytes.
+pub const MAX_SCENE_BYTES: usize = 8 << 20;
 
 /// A scene without errors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LoadedScene {
     /// The scene; all indices are valid, all numbers finite.
     pub scene: Scene,
-    /// Oddities for the author to review, in the order of the places.
+    /// Warnings for the author to review, in the order of the places.
     pub warnings: Vec<Problem>,
 }
 
@@ -25,10 +25,10 @@ pub struct LoadedScene {
 ///
 /// # Errors
 ///
-/// All problems that were found, up to [`super::MOST_PROBLEMS`] of a kind, when at least one of them is an error. The
-/// spans refer to `text` as given.
+/// All problems found, up to [`super::MAX_PROBLEMS`] of each severity, if at least one is an error. The spans refer to
+/// `text` as given.
 pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
-    if text.len() > LARGEST_SCENE {
+    if text.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes", text.len());
         return Err(Problems::whole(name, message, "a scene has at most 8 MiB"));
     }
@@ -62,7 +62,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
     }
 }
 
-/// Returns the text with every byte that is not UTF-8 replaced by `?`, so that places stay where they are.
+/// Returns the text with every byte that is not UTF-8 replaced by `?`, which keeps the offsets.
 fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
     if let Some(at) = text.iter().position(|&byte| byte == 0) {
         report.error(|| Problem::new(at..at + 1, "a NUL byte").help("the original stops reading there"));
@@ -78,7 +78,7 @@ fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
     Cow::Owned(readable)
 }
 
-/// Makes sure that the original reads the same.
+/// Checks that the original reads the same scene.
 fn compare(scene: &Scene, text: &[u8], report: &mut Report) {
     let difference = match original::read(text) {
         Ok(original) if original.scene == *scene => return,

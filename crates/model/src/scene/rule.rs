@@ -1,4 +1,4 @@
-//! The grammar's knowledge of an element.
+//! The grammar's rules for an element.
 
 /// The rules for one element.
 #[derive(Debug)]

@@ -1,6 +1,6 @@
-//! One tag: its attributes as written, with their places, and everything that is wrong with their form and names.
+//! One tag: its attributes as written, with their places, and all faults of their form and names.
 //!
-//! Values are neither translated nor understood here; that is the business of `fields`.
+//! Values are neither translated nor interpreted here; `fields` does that.
 use std::{borrow::Cow, collections::BTreeSet, ops::Range};
 
 use quick_xml::events::attributes::{AttrError, Attributes};
@@ -13,7 +13,7 @@ use super::{grammar, rule::Rule};
 pub(super) struct Attribute<'t> {
     pub(super) name: &'t str,
     pub(super) value: &'t str,
-    /// The bytes of the value, without its quotation marks unless it is empty.
+    /// The bytes of the value, without its quotation marks unless the value is empty.
     pub(super) span: Range<usize>,
 }
 
@@ -23,11 +23,11 @@ pub(super) struct Tag<'t> {
     pub(super) rule: &'static Rule,
     /// The bytes of `<name`.
     pub(super) span: Range<usize>,
-    /// Known attributes, each once.
+    /// The known attributes, each once.
     pub(super) attributes: Vec<Attribute<'t>>,
-    /// Known attributes that a misspelt one was probably meant to be.
+    /// The probable intended names of misspelt attributes.
     pub(super) meant: BTreeSet<&'static str>,
-    /// Whether its attributes could not all be read.
+    /// Whether some attributes of the tag could not be read.
     pub(super) broken: bool,
 }
 
@@ -42,7 +42,7 @@ pub(super) fn read<'t>(
     let (start, name_length) = (span.start + 1, span.len() - 1);
     let mut tag = Tag { rule, span, attributes: Vec::new(), meant: BTreeSet::new(), broken: false };
     let mut found = Attributes::new(inner, name_length);
-    // Its own check compares each with all others; here there are few names to compare with.
+    // The library's own check compares each attribute with all others; here there are few names to compare with.
     found.with_checks(false);
     for attribute in found {
         match attribute {
@@ -52,7 +52,7 @@ pub(super) fn read<'t>(
                 tag.add(text, name, value, report);
             }
             Err(error) => {
-                // The text behind it may belong to another element.
+                // The text after the fault may belong to another element.
                 tag.broken = true;
                 report.error(|| broken(rule, inner, start, &error));
                 break;
@@ -98,7 +98,7 @@ impl<'t> Tag<'t> {
     }
 }
 
-/// Returns the fault in the form of an attribute. `start` is where `inner` starts in the text.
+/// Returns the fault in the form of an attribute. `start` is the offset of `inner` in the text.
 fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
@@ -107,7 +107,7 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem 
         AttrError::ExpectedQuote(at, _) => (at, "the closing quotation mark is missing after"),
         AttrError::Duplicated(at, _) => (at, "an attribute occurs twice after"),
     };
-    // The position is behind the word that matters, with its white space.
+    // The position is after the relevant word and its white space.
     let before = inner.get(..at).unwrap_or(inner).trim_ascii_end();
     let word = before.rfind(|c: char| c.is_ascii_whitespace()).map_or(0, |space| space + 1);
     let bare = before.rfind(['"', '\'']).map_or(0, |quotation| quotation + 1);
@@ -122,17 +122,17 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem 
         .help(help)
 }
 
-/// Returns whether it is white space of XML.
+/// Returns whether a byte is white space of XML.
 pub(super) fn is_space(byte: u8) -> bool {
     matches!(byte, b' ' | b'\n' | b'\r' | b'\t')
 }
 
-/// Returns the offset at which a part of the text starts.
+/// Returns the offset at which `part` starts in `text`.
 pub(super) fn offset(text: &str, part: &str) -> usize {
     (part.as_ptr() as usize).saturating_sub(text.as_ptr() as usize).min(text.len())
 }
 
-/// Returns the names for a message: `a`, `b` and `c`.
+/// Returns the names joined for a message, such as `a`, `b` and `c`.
 pub(super) fn list(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {

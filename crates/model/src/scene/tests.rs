@@ -1,5 +1,5 @@
 //! The strict reader's words about every kind of problem, and what it does not say twice.
-use super::{LARGEST_SCENE, read};
+use super::{MAX_SCENE_BYTES, read};
 
 const START: &str = "<duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"0.1\"/>\n";
 const TWO: &str = "<particle px=\"0\" py=\"0\" vx=\"0\" vy=\"0\" m=\"1\" fixed=\"0\"/>\n\
@@ -147,7 +147,7 @@ fn what_is_missing() {
     );
     assert_eq!(
         judged(&format!("<scene>{START}</scene>")),
-        "fine\n1:1: warning: the scene has no particles (its trace holds no state)"
+        "fine\n1:1: warning: the scene has no particles (its trace would contain no state)"
     );
     says("<edge j='1'/>", "4:1: edge 0 has no `i` (required: a whole number)");
     says(
@@ -157,7 +157,7 @@ fn what_is_missing() {
     assert_eq!(judged(""), "1:1: the file has no `scene` (put everything between `<scene>` and `</scene>`)");
     assert_eq!(
         judged("<world><duration/></world>"),
-        "1:1: the root element is `world`, not `scene` (put everything into one element `scene`)"
+        "1:1: the root element is `world`, not `scene` (put all elements into one element `scene`)"
     );
     assert_eq!(
         judged(&format!("<Scene>{START}{TWO}<foo/></Scene>")),
@@ -179,7 +179,7 @@ fn what_is_there_twice() {
     // The children of a second root are not judged.
     assert_eq!(
         judged(&format!("<scene>{START}{TWO}</scene>\n<scene><particle/></scene>\n<foo/>")),
-        "5:1: a second `scene` (only the first one counts; move its elements there or to a file of their own)\n\
+        "5:1: a second `scene` (only the first one counts; move its elements there or to another file)\n\
          6:1: a second root element `foo` (only the first `scene` counts)"
     );
 }
@@ -280,7 +280,7 @@ fn durations_and_steps() {
     assert_eq!(timed("1", "0"), format!("1:66: `dt` of integrator is `0` {step}"));
     assert_eq!(timed("1", "-1"), format!("1:66: `dt` of integrator is `-1` {step}"));
     assert_eq!(timed("-1", "1"), "1:24: `time` of duration is `-1` (the simulated time cannot be negative)");
-    assert_eq!(timed("0", "1"), "fine\n1:8: warning: the duration is zero (no step is made)");
+    assert_eq!(timed("0", "1"), "fine\n1:8: warning: the duration is zero (there are no steps)");
     assert_eq!(
         timed("1e10", "1"),
         "1:8: 10000000000.0 seconds in steps of 1.0 are 1e10 steps (at most 2147483647 steps are possible; the \
@@ -303,7 +303,7 @@ fn things_in_one_place() {
         assert_eq!(
             three(collision, edge),
             format!(
-                "5:1: particles 0 and 2 start in one place {penalty}\n6:1: particle 3 starts exactly on edge 0 \
+                "5:1: particles 0 and 2 start at the same position {penalty}\n6:1: particle 3 starts exactly on edge 0 \
                 {penalty}"
             )
         );
@@ -312,7 +312,7 @@ fn things_in_one_place() {
     assert_eq!(
         three("<collision type='continuous-time'/>", edge),
         format!(
-            "fine\n5:1: warning: particles 0 and 2 start in one place {contact}\n\
+            "fine\n5:1: warning: particles 0 and 2 start at the same position {contact}\n\
              6:1: warning: particle 3 starts exactly on edge 0 {contact}"
         )
     );
@@ -326,12 +326,12 @@ fn things_in_one_place() {
     assert!(!three("<collision type='penalty'/>", plane).contains("halfplane"));
     says(
         "<particle px='0' py='0' vx='0' vy='0' m='1' fixed='1'/><edge i='0' j='2'/>",
-        "4:56: edge 0 joins particles 0 and 2, which start in one place (an edge without length has no direction; a \
+        "4:56: edge 0 joins particles 0 and 2, which start at one position (an edge without length has no direction; a \
          spring on it is not a number)",
     );
     says(
         "<particle px='0' py='0' vx='0' vy='0' m='1' fixed='1'/><gravitationalforce i='0' j='2' G='1'/>",
-        "4:56: `gravitationalforce` between particles 0 and 2, which start in one place (at distance zero it is not a \
+        "4:56: `gravitationalforce` between particles 0 and 2, which start at one position (at distance zero it is not a \
          number)",
     );
 }
@@ -446,9 +446,9 @@ fn text_and_other_markup() {
     );
     assert_eq!(
         judged(&format!("<!DOCTYPE scene [<!ENTITY a 'b'>]><scene>{START}{TWO}</scene>")),
-        "1:1: a document type with declarations, which the original ignores (remove it and write out what it declares)"
+        "1:1: a document type with declarations, which the original ignores (remove it and write its declarations out)"
     );
-    says("<!foo>", "4:1: `<!` starts neither a comment nor anything else known (`<!-- ... -->`)");
+    says("<!foo>", "4:1: `<!` does not start a comment or another known construct (`<!-- ... -->`)");
     assert_eq!(judged(&format!("\u{feff}<scene>{START}{TWO}</scene>")), "fine");
 }
 
@@ -461,7 +461,7 @@ fn bytes_that_are_no_text() {
     assert_eq!(bytes(&latin), "4:23: a byte that is not UTF-8 (save the file as UTF-8)");
     let ended: Vec<u8> = scene.iter().map(|&byte| if byte == b'?' { 0 } else { byte }).collect();
     assert_eq!(bytes(&ended), "4:23: a NUL byte (the original stops reading there)");
-    assert_eq!(bytes(&vec![b' '; LARGEST_SCENE + 1]), "1:1: the file has 8388609 bytes (a scene has at most 8 MiB)");
+    assert_eq!(bytes(&vec![b' '; MAX_SCENE_BYTES + 1]), "1:1: the file has 8388609 bytes (a scene has at most 8 MiB)");
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! Scenes as XML that both readers understand alike.
+//! Writes scenes as XML with the same meaning for both readers.
 use super::{
     element::Element,
     forces,
@@ -6,11 +6,11 @@ use super::{
 };
 use std::fmt;
 
-/// Writes a scene as XML, one element a line, every attribute spelt out, every number in the shortest form that reads
+/// Writes a scene as XML, one element per line, with every attribute, and every number in the shortest form that reads
 /// back to the same bits.
 ///
-/// Reading gives an equal scene, provided that its forces are in the order in which they act and that it is valid: a
-/// NaN or an infinity has no form in XML, and a NUL in a text is written as U+FFFD.
+/// Reading gives an equal scene if its forces are in acting order and it is valid. A NaN or an infinity has no form in
+/// XML, and a NUL in a text is written as U+FFFD.
 #[must_use]
 pub fn write(scene: &Scene) -> String {
     let display = &scene.display;
@@ -90,13 +90,13 @@ pub fn integrator_element(scene: &Scene) -> String {
     integrator(scene).to_string()
 }
 
-/// Returns the element of a scene's collision handling; empty if there is none.
+/// Returns the element of a scene's collision handling; empty without one.
 #[must_use]
 pub fn collision_element(handling: Collision) -> String {
     collision(handling).map_or_else(String::new, |element| element.to_string())
 }
 
-/// The element as a file has it.
+/// The element as written in a file.
 impl fmt::Display for Force {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         forces::element(self).fmt(f)

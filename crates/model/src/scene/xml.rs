@@ -1,6 +1,6 @@
-//! From elements to a scene: which attributes each element has, and which values make sense (scene-format.md 4, 5).
+//! Converts elements to a scene: the attributes of each element, and their allowed values (scene-format.md 4, 5).
 //!
-//! Errors that only several elements together can make are judged in `checks`.
+//! Errors that involve several elements are found in `checks`.
 use super::document::Document;
 use super::fields::{Count, TagFields};
 use super::forces::Source;
@@ -31,18 +31,18 @@ pub(super) struct Part<'d, 't, T> {
     pub(super) value: Option<T>,
 }
 
-/// Returns all values, when nothing of them is missing.
+/// Returns all values; `None` if one is missing.
 fn values<T>(parts: Vec<Part<'_, '_, T>>) -> Option<Vec<T>> {
     parts.into_iter().map(|part| part.value).collect()
 }
 
 impl SceneParts<'_, '_> {
-    /// Returns the starting place of a particle, if it could be read.
+    /// Returns the start position of a particle, if it could be read.
     pub(super) fn place(&self, particle: usize) -> Option<Vec2> {
         Some(self.particles.get(particle)?.value.as_ref()?.position)
     }
 
-    /// Returns the scene, when nothing of it is missing.
+    /// Returns the scene; `None` if a part is missing.
     pub(super) fn into_scene(self) -> Option<Scene> {
         let (integrator, time_step) = self.integrator?.value?;
         Some(Scene {
@@ -60,7 +60,7 @@ impl SceneParts<'_, '_> {
     }
 }
 
-/// Reads all elements. `None` when the scene is of a kind that is not simulated here.
+/// Reads all elements. Returns `None` if the scene is of a kind that is not simulated here.
 pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> Option<SceneParts<'d, 't>> {
     let mut reading = SceneBuilder { document, report };
     if reading.is_rigid() {
@@ -99,7 +99,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         self.document.tags.iter().filter(move |tag| tag.rule.name == name)
     }
 
-    /// Elements of a kind that may be repeated.
+    /// Reads the elements of a kind that may be repeated.
     fn check_repeated<T>(
         &mut self,
         name: &str,
@@ -127,7 +127,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         Some(Part { tag, value: read(&mut TagFields::new(tag, None, self.report)) })
     }
 
-    /// Returns a single element that may be absent; the outer `None` means unreadable.
+    /// Returns a single optional element; the outer `None` means unreadable.
     fn optional<T>(
         &mut self,
         name: &str,
@@ -136,7 +136,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         self.single(name, read).map_or(Some(None), |part| part.value.map(Some))
     }
 
-    /// Returns a single element that must be there.
+    /// Returns a single required element.
     fn require<T>(
         &mut self,
         name: &str,
@@ -160,12 +160,12 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         Count { what, count, certain: !self.document.broken && !self.document.meant.contains(name) }
     }
 
-    /// Returns whether the scene belongs to the unfinished rigid-body stub; reports wrong types, too.
+    /// Returns whether the scene belongs to the unfinished rigid-body stub; also reports wrong types.
     fn is_rigid(&mut self) -> bool {
         let types = [("particle-system", false), ("rigid-body", true)];
         let stub = "rigid bodies are an unfinished stub of the original and are not simulated";
         let single = self.single("simtype", |fields| {
-            // Absent and empty mean a particle system.
+            // A missing or empty type means a particle system.
             let rigid = !fields.is_blank("type") && fields.choice("type", &types)?;
             if rigid {
                 fields.report_bad("type", format!("{stub}; use `particle-system`"));
@@ -267,7 +267,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
-        fields.warn_of_odd("COR", "a coefficient of restitution must be between 0 and 1");
+        fields.warn_bad("COR", "a coefficient of restitution must be between 0 and 1");
     }
     let kind = fields.choice("type", &types)?;
     let used: &[&str] = match kind {
@@ -307,7 +307,7 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     }
 }
 
-/// Returns `maxiters`: a scalar in the original, which cuts off its fraction.
+/// Returns `maxiters`, which the original reads as a scalar and truncates.
 fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     let written = fields.scalar_or("maxiters", 10.0)?;
     if written.trunc() != written || written < f64::from(i32::MIN) || written > f64::from(i32::MAX) {
@@ -317,7 +317,7 @@ fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     #[expect(clippy::cast_possible_truncation, reason = "whole and in range")]
     let iterations = written as i32;
     if iterations < 0 {
-        fields.warn_of_odd("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
+        fields.warn_bad("maxiters", "it acts like 0: no impulse, only the rigid failsafe");
     }
     Some(iterations)
 }
@@ -348,14 +348,14 @@ fn edge(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
     Some(Edge { first, second, radius: radius? })
 }
 
-/// Returns two different particles in `i` and `j`.
+/// Returns the two different particles in `i` and `j`.
 fn pair(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
     let first = fields.index("i", particles);
     let second = other(fields, first, particles);
     Some((first?, second?))
 }
 
-/// Returns the particle in `j`, which differs from the one in `i`.
+/// Returns the particle in `j`, which must differ from the one in `i`.
 fn other(fields: &mut TagFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
     let second = fields.index("j", particles)?;
     if first == Some(second) {
@@ -375,7 +375,7 @@ struct ForceFields<'d, 't, 'r, 'f> {
 }
 
 impl Source for ForceFields<'_, '_, '_, '_> {
-    /// The report has it.
+    /// The error has been reported.
     type Error = ();
 
     fn edge(&mut self, name: &'static str) -> Result<usize, ()> {
@@ -410,9 +410,9 @@ fn read_path(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Par
     Some(ParticlePath { particle: particle?, duration: duration?, color: color? })
 }
 
-/// Warns of a number below zero that the original accepts.
+/// Warns about a negative number that the original accepts.
 fn warn_of_negative(fields: &mut TagFields<'_, '_, '_>, name: &str, value: f64, effect: &str) {
     if value < 0.0 {
-        fields.warn_of_odd(name, effect);
+        fields.warn_bad(name, effect);
     }
 }

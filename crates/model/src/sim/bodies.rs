@@ -1,6 +1,6 @@
 //! The scene's constants as one array per attribute.
 //!
-//! Nothing here changes during a simulation. Particles, edges and half-planes keep their document order, which is
+//! Nothing in them changes during a simulation. Particles, edges and half-planes keep their document order, which is
 //! the order of every loop over them (simulation.md 1).
 use super::{
     pair::{Pair, PairKind},
@@ -12,17 +12,17 @@ use fosssim_num::vector::Vec2;
 /// Masses, radii, flags, edges and half-planes.
 #[derive(Debug, Clone)]
 pub(super) struct Bodies {
-    /// Mass per particle, as written.
+    /// The mass per particle, as written.
     pub masses: Vec<f64>,
-    /// Mass per particle as responses see it: infinite for a fixed one (collisions.md 3).
+    /// The mass per particle for responses: infinite for a fixed particle (collisions.md 3).
     pub response_masses: Vec<f64>,
-    /// Radius per particle.
+    /// The radius per particle.
     pub radii: Vec<f64>,
     /// Whether a particle is fixed.
     pub fixed: Vec<bool>,
-    /// First and second endpoint per edge.
+    /// The first and second endpoint per edge.
     pub edges: Vec<[usize; 2]>,
-    /// Radius per edge.
+    /// The radius per edge.
     pub edge_radii: Vec<f64>,
     /// A boundary point per half-plane.
     pub points: Vec<Vec2>,
@@ -34,7 +34,7 @@ impl Bodies {
     /// Copies the scene's constants.
     ///
     /// # Panics
-    /// When an edge or a force names something that the scene does not have; the strict reader rejects such scenes.
+    /// If an edge or a force names an object that the scene does not have; the strict reader rejects such scenes.
     pub fn new(scene: &Scene) -> Self {
         let particles = &scene.particles;
         for (index, edge) in scene.edges.iter().enumerate() {
@@ -60,13 +60,13 @@ impl Bodies {
         self.masses.len()
     }
 
-    /// Returns the number of objects of each kind from which pairs are made.
+    /// Returns the number of objects of each kind.
     #[inline]
     pub fn objects(&self) -> Objects {
         Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
-    /// Returns the particles of a pair; the last one replaces missing ones.
+    /// Returns the particles of a pair; a pair with fewer than three repeats the last one.
     pub fn particles_of(&self, pair: Pair) -> [usize; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {
@@ -76,7 +76,7 @@ impl Bodies {
         }
     }
 
-    /// Estimates the number of pairs that a pass checks.
+    /// Estimates the number of pairs in a pass.
     pub fn pairs(&self) -> usize {
         self.particles() * (self.particles() / 2 + self.edges.len() + self.points.len())
     }

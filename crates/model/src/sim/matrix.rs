@@ -1,7 +1,8 @@
-//! The places in the dense matrix of the implicit integrators at which two bodies meet.
+//! Adds and subtracts 2x2 blocks of body pairs in the dense matrix of the implicit integrators.
 use nalgebra::{DMatrix, Matrix2};
 
-/// Adds a block for each of two particles, and subtracts it where the rows of one meet the columns of the other.
+/// Adds a block on the diagonal for each of two particles, and subtracts it where the rows of one cross the columns of
+/// the other.
 pub(crate) fn couple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
         let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);
@@ -13,7 +14,7 @@ pub(crate) fn couple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matr
     }
 }
 
-/// Subtracts the block, the opposite of [`couple`]: with the negative block [`couple`] would give a NaN another sign.
+/// Subtracts the block, the opposite of [`couple`]. With the negated block, [`couple`] would give a NaN another sign.
 pub(crate) fn decouple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
         let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);

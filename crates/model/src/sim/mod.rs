@@ -1,8 +1,8 @@
 //! The reference simulator: state, forces, integrators, collision handling.
 //!
-//! [`Simulation::step`] fails only with a typed numerical outcome. It never does I/O, reads no clock, starts no
-//! thread and prints nothing; everything it computes reaches an [`Observer`]. The mathematics is that of
-//! `simulation.md` and `collisions.md`, evaluated in the order given there.
+//! [`Simulation::step`] fails only with a typed numerical outcome. It does no I/O, reads no clock, starts no thread and
+//! prints nothing; all results go to an [`Observer`]. The mathematics is that of `simulation.md` and `collisions.md`,
+//! evaluated in the order given there.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod bodies;

@@ -1,4 +1,4 @@
-//! Observers receive every detection call, pass, impulse and zone while the simulator computes, and may steer a step.
+//! Observers receive every detection call, pass, impulse and zone during a simulation, and may steer a step.
 use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use serde::{Deserialize, Serialize};
@@ -9,18 +9,18 @@ use serde::{Deserialize, Serialize};
 /// `detection` per pair (and, for `simple` and `continuous-time`, an `impulse` right after the detection that caused
 /// it), `end_pass`; for `hybrid` the pass's `impulse`s follow its `end_pass`. Then `synchronization` (continuous-time:
 /// at the end of the handler; hybrid: after the impulses, before the geometric part). In the geometric part:
-/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge. Last
-/// `end_step`.
+/// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge.
+/// `end_step` is last.
 ///
-/// An observer changes nothing. To continue the step with other values, it returns a [`Steer`].
+/// An observer itself changes nothing. It returns a [`Steer`] to continue the step with other values.
 pub trait Observer {
-    /// Receives the begin of a step; steps count from 1.
+    /// Observes the start of a step; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
-    /// Receives the begin of a detection pass.
+    /// Observes the start of a detection pass.
     fn begin_pass(&mut self, _pass: Pass) {}
-    /// Receives the starts and ends of particles (2N each) as the pass begins to see them, right after `begin_pass`.
+    /// Observes the start and end positions of particles (2N each) for the pass, right after `begin_pass`.
     fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
-    /// Returns the wishes of this observer about the pass's pairs; called once or more in each pass. Unless it wants
+    /// Returns the pairs whose detections this observer needs; called at least once in each pass. Unless the answer is
     /// [`WantedPairs::Calls`], `detection` is not called, calls are not steered, and pairs are computed many at a time.
     #[inline]
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
@@ -31,45 +31,45 @@ pub trait Observer {
     fn steers(&mut self) -> Option<&mut dyn Steer> {
         None
     }
-    /// Receives the test of a pair.
+    /// Observes the test of a pair.
     fn detection(&mut self, _detection: &Detection<'_>) {}
-    /// Receives a pair that collides: right after its `detection`, which not every observer wants.
+    /// Observes a pair that collides, right after `detection`, which some observers do not request.
     fn hit(&mut self, _pair: Pair) {}
-    /// Receives the end of the pass, in which `hits` pairs collide.
+    /// Observes the end of a pass in which `hits` pairs collide.
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
-    /// Receives a response that was applied.
+    /// Observes an applied response.
     fn impulse(&mut self, _impulse: &Impulse) {}
-    /// Receives the synchronization point: the state of the mid record, before it may be replaced.
+    /// Observes the synchronization point with the state of the mid record, before the state may be replaced.
     fn synchronization(&mut self, _state: &State) {}
-    /// Receives the impact zones after the merge of geometric round `round` (0: before the first failsafe).
+    /// Observes the impact zones after the merge of geometric round `round` (0: before the first failsafe).
     fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
-    /// Receives a zone that the rigid failsafe is about to move.
+    /// Observes a zone before the rigid failsafe moves it.
     fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
-    /// Receives the end of the step, with this state.
+    /// Observes the end of a step with its state.
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
 
-/// Steers a step: the step continues with the values that it sets. Every method changes nothing by default.
+/// Steers a step, which continues with the values that it sets. By default the methods change nothing.
 pub trait Steer {
-    /// Returns the polynomials of a pair, trimmed, are about to be searched for a time of impact. Others may be put in
-    /// their place; search, decision and [`Observer::detection`] then go by those. Not called by `simple`, which has
-    /// none.
+    /// Receives the trimmed polynomials of a pair before the search for a time of impact. They may be replaced; search,
+    /// decision and [`Observer::detection`] then use the replacements. Not called by `simple`, which has no
+    /// polynomials.
     fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
-    /// Receives the system matrix of an implicit integrator, column by column, before it is solved; once for each solve
-    /// of a step. The step continues with the entries that it leaves.
+    /// Receives the system matrix of an implicit integrator, column by column, before each solve of a step. The step
+    /// continues with the modified entries.
     fn system(&mut self, _matrix: &mut [f64]) {}
-    /// Returns the decision about a pair, with which the step continues.
+    /// Returns the decision about a pair with which the step continues.
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
-    /// Receives the synchronization point, after [`Observer::synchronization`]. The step continues with the values that
-    /// are written here; the geometric part of `hybrid` starts from the values that the answer names.
+    /// Receives the synchronization point, after [`Observer::synchronization`]. The step continues with the values
+    /// written here; the returned value selects the state from which the geometric part of `hybrid` starts.
     fn synchronize(&mut self, _state: &mut State) -> Resume {
         Resume::Own
     }
 }
 
-/// The observer that only steers.
+/// An observer that only steers.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Steering<S>(pub S);
 
@@ -85,14 +85,14 @@ pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> R
     observer.steers().map_or(Resume::Own, |steer| steer.synchronize(state))
 }
 
-/// The wishes of an observer about the pairs of a detection pass.
+/// The pairs of a detection pass that an observer needs.
 #[derive(Debug)]
 pub enum WantedPairs<'a> {
     /// Every call, one by one.
     Calls,
-    /// The polynomials as a trace holds them, to be appended here.
+    /// The polynomials in the form of a trace, to be appended here.
     Bytes(&'a mut PolynomialBytes),
-    /// Nothing.
+    /// No pairs.
     Nothing,
 }
 
@@ -104,8 +104,8 @@ impl Observer for () {
     }
 }
 
-/// Forwards every event to these observers, one after the other.
-macro_rules! go_on {
+/// Forwards every event to the given observers, one after the other.
+macro_rules! forward_all {
     ($self:ident => $($to:expr),+) => {
         fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
         fn begin_pass(&mut $self, pass: Pass) { $($to.begin_pass(pass);)+ }
@@ -121,9 +121,9 @@ macro_rules! go_on {
     };
 }
 
-/// A borrowed observer receives the same.
+/// A borrowed observer receives the same events.
 impl<O: Observer + ?Sized> Observer for &mut O {
-    go_on!(self => (**self));
+    forward_all!(self => (**self));
     #[inline]
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         (**self).wanted_pairs()
@@ -134,10 +134,10 @@ impl<O: Observer + ?Sized> Observer for &mut O {
     }
 }
 
-/// Two observers receive the same, the first one first.
+/// Two observers receive the same events, the first one first.
 impl<A: Observer, B: Observer> Observer for (A, B) {
-    go_on!(self => self.0, self.1);
-    /// Returns the wish of one observer, if the other wants nothing.
+    forward_all!(self => self.0, self.1);
+    /// Returns the needs of one observer, if the other needs nothing.
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         if matches!(self.1.wanted_pairs(), WantedPairs::Nothing) {
             self.0.wanted_pairs()
@@ -152,8 +152,8 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// The second observer sees a state that the first one sets. The geometric part starts from the synchronized state if
-/// one of them requests it.
+/// The second observer receives the state as the first one sets it. The geometric part starts from the synchronized
+/// state if one of them requests it.
 impl<A: Observer, B: Observer> Steer for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
@@ -175,9 +175,9 @@ impl<A: Observer, B: Observer> Steer for (A, B) {
 /// The state from which the geometric part of `hybrid` starts, after the synchronization point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Resume {
-    /// The simulator's own values, as the original grades (collisions.md 5.4).
+    /// The simulator's own values, as in the original's grading (collisions.md 5.4).
     Own,
-    /// The state that was put in place.
+    /// The state that an observer has set.
     Synchronized,
 }
 
@@ -185,9 +185,9 @@ pub enum Resume {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(from = "PassForm", into = "PassForm")]
 pub struct Pass {
-    /// The part of the handling that makes the call.
+    /// The part of the handling to which the pass belongs.
     pub stage: Stage,
-    /// Number of the pass within the step, from 0.
+    /// The number of the pass within the step, from 0.
     pub index: u32,
 }
 
@@ -200,24 +200,24 @@ pub enum Stage {
     ContinuousTime,
     /// An impulse round of `hybrid`, from 0.
     Impulses {
-        /// The round.
+        /// The number of the round.
         round: u32,
     },
-    /// A pass of the geometric part of `hybrid`: 0 builds the first zones.
+    /// A pass of the geometric part of `hybrid`; pass 0 builds the first zones.
     Geometric {
-        /// The round.
+        /// The number of the round.
         round: u32,
     },
 }
 
-/// A pass in its serialized form: the round is 0 in stages that have one pass.
+/// A pass in its serialized form. The round is 0 in stages with one pass.
 #[derive(Serialize, Deserialize, schemars::JsonSchema)]
 struct PassForm {
-    /// Number of the pass within the step, from 0.
+    /// The number of the pass within the step, from 0.
     index: u32,
-    /// The part of collision handling that makes the call.
+    /// The part of collision handling to which the pass belongs.
     stage: StageName,
-    /// Round within the stage, from 0.
+    /// The round within the stage, from 0.
     round: u32,
 }
 
@@ -257,19 +257,19 @@ impl From<PassForm> for Pass {
 /// The inputs and the decision of one detection call.
 #[derive(Debug, Clone, Copy)]
 pub struct Detection<'a> {
-    /// The pass.
+    /// The pass of the call.
     pub pass: Pass,
-    /// The pair.
+    /// The pair that is tested.
     pub pair: Pair,
     /// The polynomials as logged, in the order of the trace; empty for `simple`.
     pub polynomials: &'a [Polynomial],
-    /// The decision.
+    /// The decision about the pair.
     pub decision: Decision,
-    /// Positions at the start of the step, 2N.
+    /// The positions at the start of the step, 2N.
     pub q_start: &'a [f64],
-    /// Positions at the end of the step as this pass sees them, 2N.
+    /// The current positions at the end of the step in this pass, 2N.
     pub q_end: &'a [f64],
-    /// Velocities as this call sees them, 2N; empty if detection uses polynomials.
+    /// The current velocities in this call, 2N; empty if detection uses polynomials.
     pub velocities: &'a [f64],
 }
 
@@ -279,14 +279,14 @@ pub enum Decision {
     /// The objects collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the
     /// second.
     Hit {
-        /// Time of impact in [0, 1]; 0 for `simple`.
+        /// The time of impact in [0, 1]; 0 for `simple`.
         time: f64,
-        /// Contact normal, not normalized.
+        /// The contact normal, not normalized.
         normal: Vec2,
     },
     /// The objects do not collide within the step.
     Miss {
-        /// The knowledge of the time.
+        /// The information about the time of impact.
         time: Time,
     },
 }
@@ -298,7 +298,7 @@ impl Decision {
         matches!(self, Self::Hit { .. })
     }
 
-    /// Returns the time that was found; infinite if there is none, or none was searched.
+    /// Returns the time of impact; infinite if there is none, or none was searched.
     #[must_use]
     pub const fn time(self) -> f64 {
         match self {
@@ -308,26 +308,26 @@ impl Decision {
     }
 }
 
-/// The knowledge of the time of a pair that does not collide.
+/// The information about the time of a pair that does not collide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Time {
-    /// Nothing was searched: a certificate proves that it is not within the step.
+    /// No time was searched, because a certificate proves that it is not within the step.
     Excluded,
-    /// The search gave this time (greater than 1, infinite; or at most 1 with a zero normal).
+    /// The search found this time (greater than 1 or infinite, or at most 1 with a zero normal).
     Found(f64),
-    /// `simple` knows no times.
+    /// The handling `simple` has no times.
     None,
 }
 
-/// An applied response; in `simple` and `continuous-time` the trace logs it.
+/// An applied response. In `simple` and `continuous-time` the trace logs it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Impulse {
-    /// The pair.
+    /// The pair that collides.
     pub pair: Pair,
-    /// Contact normal, not normalized.
+    /// The contact normal, not normalized.
     #[serde(with = "fosssim_num::written")]
     pub normal: Vec2,
-    /// Time of impact as a fraction of the step.
+    /// The time of impact as a fraction of the step.
     #[serde(with = "fosssim_num::written")]
     pub time: f64,
 }
@@ -337,6 +337,6 @@ pub struct Impulse {
 pub struct Zone<'a> {
     /// The zone's particles, ascending.
     pub particles: &'a [u32],
-    /// Whether a half-plane is part of it.
+    /// Whether a half-plane is part of the zone.
     pub half_plane: bool,
 }

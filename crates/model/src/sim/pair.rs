@@ -8,13 +8,13 @@ use std::ops::{Index, IndexMut};
 pub struct Pair {
     /// The kind of the second object.
     pub kind: PairKind,
-    /// Index of the particle.
+    /// The index of the particle.
     pub first: u32,
-    /// Index of the second object among its kind.
+    /// The index of the second object among its kind.
     pub second: u32,
 }
 
-/// Names a pair.
+/// Creates a pair.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
@@ -26,13 +26,13 @@ pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
 pub struct ByKind<T>([T; PairKind::ALL.len()]);
 
 impl<T> ByKind<T> {
-    /// Returns the values that a function gives.
+    /// Creates the values with a function.
     #[must_use]
     pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
         Self(PairKind::ALL.map(value))
     }
 
-    /// Kinds and values, in the order of [`PairKind::ALL`].
+    /// Returns kinds and values, in the order of [`PairKind::ALL`].
     pub fn iter(&self) -> impl Iterator<Item = (PairKind, &T)> {
         PairKind::ALL.into_iter().zip(&self.0)
     }
@@ -42,12 +42,12 @@ impl<T> ByKind<T> {
         self.0.iter()
     }
 
-    /// Returns the values, to be changed.
+    /// Returns mutable references to the values.
     pub fn values_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.0.iter_mut()
     }
 
-    /// Returns the values themselves.
+    /// Returns the values by value.
     pub fn into_values(self) -> impl Iterator<Item = T> {
         self.0.into_iter()
     }

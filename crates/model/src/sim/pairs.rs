@@ -1,42 +1,42 @@
 //! The pairs that a detection pass checks: their kinds, order and number, and the owner of a logged polynomial
 //! (collisions.md 1, trace-format.md 2).
 //!
-//! This is the only enumeration of a pass: code that goes through the pairs of a particle, for the sake of values that
-//! pairs share, takes the ranges of each kind from [`Objects::row`].
+//! This is the only enumeration of a pass. Code that visits the pairs of a particle by kind, to share values between
+//! pairs, gets the ranges from [`Objects::row`].
 use super::pair::{ByKind, Pair, PairKind, pair};
 use crate::scene::Scene;
 use std::{cmp::Ordering, ops::Range};
 
-/// The number of objects of which pairs consist.
+/// The number of objects of each kind.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Objects {
-    /// Number of particles.
+    /// The number of particles.
     pub particles: usize,
-    /// Number of edges.
+    /// The number of edges.
     pub edges: usize,
-    /// Number of half-planes.
+    /// The number of half-planes.
     pub half_planes: usize,
 }
 
 /// The next pair of a pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct PassCursor {
-    /// The particle.
+    /// The index of the particle.
     pub first: usize,
-    /// The kind of the object that it meets.
+    /// The kind of the second object.
     pub kind: PairKind,
-    /// The number of that; behind the last one the next kind follows.
+    /// The number of the second object; after the last one the next kind follows.
     pub second: usize,
 }
 
 impl PassCursor {
-    /// Returns the first pair with this particle as its first object.
+    /// Returns the first pair whose first object is particle `first`.
     #[inline]
     pub const fn from_first(first: usize) -> Self {
         Self { first, kind: PairKind::ALL[0], second: 0 }
     }
 
-    /// Returns the pair after one.
+    /// Returns the position after a pair.
     #[inline]
     pub const fn following(kind: PairKind, first: usize, second: usize) -> Self {
         Self { first, kind, second: second + 1 }
@@ -44,8 +44,8 @@ impl PassCursor {
 }
 
 impl Objects {
-    /// Returns the numbers of the objects that a particle meets: of particles the later ones, of edges all (but see
-    /// [`is_end`]), of half-planes all.
+    /// Returns the numbers of the objects that a particle is paired with: all later particles, all edges (but see
+    /// [`is_end`]), and all half-planes.
     #[inline]
     fn seconds(self, kind: PairKind, first: usize) -> Range<usize> {
         match kind {
@@ -55,8 +55,8 @@ impl Objects {
         }
     }
 
-    /// Returns the rest of a particle's pairs from a place on: for each kind, in the order of the pass, the numbers of
-    /// the objects that it meets. Among edges there are those that it is an end of ([`is_end`]).
+    /// Returns the rest of a particle's pairs from a position on: for each kind, in the order of the pass, the numbers
+    /// of the second objects. The edges include those that end in the particle ([`is_end`]).
     #[inline(always)]
     pub fn row(self, from: PassCursor) -> [Range<usize>; PairKind::ALL.len()] {
         PairKind::ALL.map(|kind| {
@@ -70,7 +70,7 @@ impl Objects {
     }
 }
 
-/// Returns whether a particle is an end of an edge, with which it is no pair then.
+/// Returns whether a particle is an end of an edge; the two are then not a pair.
 #[inline]
 pub(super) fn is_end(ends: [usize; 2], particle: usize) -> bool {
     ends.contains(&particle)
@@ -80,7 +80,7 @@ pub(super) fn is_end(ends: [usize; 2], particle: usize) -> bool {
 #[derive(Debug, Clone, Default)]
 pub struct Pairs {
     particles: usize,
-    /// The ends of each edge.
+    /// The endpoints of each edge.
     edges: Vec<[usize; 2]>,
     half_planes: usize,
 }
@@ -93,13 +93,13 @@ pub fn pairs(scene: &Scene) -> Pairs {
 }
 
 impl Pairs {
-    /// Returns all pairs, in the order of the pass: particle by particle, with all later particles, then with the edges
-    /// that it is no end of, then with the half-planes.
+    /// Returns all pairs in the order of the pass: particle by particle, with all later particles, then with the edges
+    /// that do not end in it, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
         (0..self.particles).flat_map(|particle| self.pairs_of(particle))
     }
 
-    /// Returns the pairs with this particle as their first object.
+    /// Returns the pairs whose first object is particle `first`.
     pub fn pairs_of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
         PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::from_first(first))).flat_map(
             move |(kind, seconds)| {
@@ -133,14 +133,14 @@ impl Pairs {
         self.counts().values().sum()
     }
 
-    /// Returns the number of polynomials that a pass logs, if passes log any.
+    /// Returns the number of polynomials of a pass, if passes log polynomials.
     #[must_use]
     pub fn polynomials(&self) -> usize {
         self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
     }
 
     /// Returns the owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's
-    /// number among its own. None if a pass has no polynomial.
+    /// number within the pair. `None` if passes have no polynomials.
     #[must_use]
     pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
         let per_pass = self.polynomials();
@@ -173,7 +173,7 @@ mod tests {
         sim::{Detection, Observer, Pass, RootSearch, Simulation},
     };
 
-    /// Returns five discs, edges that share ends, half-planes; far apart, except for two discs that meet.
+    /// Returns five discs, edges that share ends, and half-planes; far apart, except for two discs that meet.
     fn scene(collision: &str) -> Scene {
         let particle = |x: f64, y: f64, vx: f64| {
             format!("<particle m=\"1\" px=\"{x}\" py=\"{y}\" vx=\"{vx}\" vy=\"0\" fixed=\"0\" radius=\"0.25\"/>")
@@ -257,7 +257,7 @@ mod tests {
     fn numbers_lead_back_to_kinds() {
         for (number, kind) in PairKind::ALL.into_iter().enumerate() {
             assert_eq!((kind.index(), PairKind::from_code(kind.code())), (number, Some(kind)));
-            assert!(kind.polynomials() <= PairKind::MOST_POLYNOMIALS);
+            assert!(kind.polynomials() <= PairKind::MAX_POLYNOMIALS);
         }
         assert_eq!((PairKind::from_code(-1), PairKind::from_code(3)), (None, None));
     }

@@ -1,17 +1,15 @@
-//! Polynomials as a trace holds them: written once, where they are known.
+//! Polynomials in the bytes of a trace, written once when they are computed.
 //!
-//! A detection pass whose polynomials only have to be logged writes them here (trace-format.md 1: little-endian,
-//! packed, a 32-bit size before the coefficients), and the recorder and the comparison of a step take the bytes as they
-//! are.
+//! A detection pass that only logs polynomials writes them here (trace-format.md 1: little-endian, packed, a 32-bit
+//! size before the coefficients), and the recorder and the comparison of a step use the bytes unchanged.
 use fosssim_num::polynomial::MAX_COEFFICIENTS;
 use std::ops::Range;
 
-/// A list of polynomials in a trace's own bytes, without the list's count. Its memory is kept from step to step, and so
-/// may be its bytes, for a caller that writes those of several steps at once.
+/// A list of polynomials in a trace's bytes, without the list's count. Its memory is reused from step to step. Its
+/// bytes may be kept for a caller that writes the lists of several steps together.
 #[derive(Debug, Clone, Default)]
 pub struct PolynomialBytes {
-    /// The list's bytes are those from `begin` up to `used`; earlier lists may come before them, and room for more
-    /// follows.
+    /// The bytes of the list are those from `begin` to `used`. Earlier lists may precede them, and free room follows.
     bytes: Vec<u8>,
     begin: usize,
     used: usize,
@@ -19,31 +17,31 @@ pub struct PolynomialBytes {
     largest: f64,
 }
 
-/// Bytes of the largest polynomial that a detection logs.
-const MOST_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
+/// The number of bytes of the largest polynomial that a detection logs.
+const MAX_BYTES: usize = 4 + 8 * MAX_COEFFICIENTS;
 
-/// The most bytes by which larger lists grow; small lists double. A hostile trace may make a step's list take hundreds
-/// of megabytes, but not twice as many.
-const MOST_GROWTH: usize = 16 << 20;
+/// The maximum number of bytes by which larger lists grow; small lists double. A hostile trace may make a step's list
+/// take hundreds of megabytes, but not twice as many.
+const MAX_GROWTH: usize = 16 << 20;
 
 impl PolynomialBytes {
-    /// Empties the list, and forgets earlier ones.
+    /// Empties the list, and removes earlier ones.
     pub fn clear(&mut self) {
         self.used = 0;
         self.begin();
     }
 
-    /// Begins a new list behind those that are there.
+    /// Begins a new list after the existing ones.
     pub(crate) fn begin(&mut self) {
         (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
     }
 
-    /// Returns the place of the list among [all](Self::all) bytes.
+    /// Returns the range of the list within [all](Self::all) bytes.
     pub(crate) fn range(&self) -> Range<usize> {
         self.begin..self.used
     }
 
-    /// Returns the bytes of all lists that are there.
+    /// Returns the bytes of all lists.
     pub(crate) fn all(&self) -> &[u8] {
         &self.bytes[..self.used]
     }
@@ -71,7 +69,7 @@ impl PolynomialBytes {
         })
     }
 
-    /// Returns a bound of all moduli of coefficients; a NaN does not count. It may come from a pair that is not logged.
+    /// Returns an upper bound of all moduli of coefficients, ignoring NaN. It may come from a pair that is not logged.
     #[must_use]
     pub fn largest(&self) -> f64 {
         self.largest
@@ -80,13 +78,13 @@ impl PolynomialBytes {
     /// Appends one polynomial, highest power first.
     ///
     /// # Panics
-    /// With more than [`MAX_COEFFICIENTS`] coefficients.
+    /// If there are more than [`MAX_COEFFICIENTS`] coefficients.
     #[inline]
     pub fn push(&mut self, coefficients: &[f64]) {
         assert!(coefficients.len() <= MAX_COEFFICIENTS, "detection polynomials are of degree five at most");
         let mut largest = self.largest;
-        // A copy of constant length, of which a part counts, is several times faster than one of variable length.
-        let mut polynomial = [0; MOST_BYTES];
+        // A copy of constant length, of which a part counts, is several times faster than a copy of variable length.
+        let mut polynomial = [0; MAX_BYTES];
         #[expect(clippy::cast_possible_truncation, reason = "at most six")]
         let size = coefficients.len() as u32;
         polynomial[..4].copy_from_slice(&size.to_le_bytes());
@@ -94,12 +92,12 @@ impl PolynomialBytes {
             place.copy_from_slice(&coefficient.to_le_bytes());
             largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
         }
-        self.room(MOST_BYTES)[..MOST_BYTES].copy_from_slice(&polynomial);
+        self.room(MAX_BYTES)[..MAX_BYTES].copy_from_slice(&polynomial);
         self.largest = largest;
         self.count_added(4 + 8 * coefficients.len(), 1);
     }
 
-    /// Returns the room behind the list, of `bytes` or more.
+    /// Returns at least `bytes` bytes of room after the list.
     #[inline]
     pub(super) fn room(&mut self, bytes: usize) -> &mut [u8] {
         if self.bytes.len() - self.used < bytes {
@@ -108,14 +106,14 @@ impl PolynomialBytes {
         &mut self.bytes[self.used..]
     }
 
-    /// Makes the bytes that were written into the [room](Self::room) a part of the list.
+    /// Adds the bytes that were written into the [room](Self::room) to the list.
     #[inline]
     pub(super) fn count_added(&mut self, bytes: usize, polynomials: usize) {
         self.used += bytes;
         self.count += polynomials;
     }
 
-    /// Notes that a coefficient has this modulus, or that none is larger.
+    /// Raises the bound of moduli to `largest`.
     #[inline]
     pub(super) fn raise(&mut self, largest: f64) {
         self.largest = self.largest.max(largest);
@@ -124,7 +122,7 @@ impl PolynomialBytes {
     #[cold]
     fn grow(&mut self, bytes: usize) {
         let size = self.bytes.len();
-        let most = (self.used + bytes).max(size + size.min(MOST_GROWTH));
+        let most = (self.used + bytes).max(size + size.min(MAX_GROWTH));
         self.bytes.reserve_exact(most - size);
         self.bytes.resize(most, 0);
     }
@@ -138,10 +136,10 @@ mod tests {
     #[test]
     fn long_lists_do_not_double() {
         let mut list = PolynomialBytes::default();
-        while list.bytes().len() < 5 * MOST_GROWTH {
+        while list.bytes().len() < 5 * MAX_GROWTH {
             list.push(&[0.5; 6]);
         }
-        assert!(list.bytes.capacity() <= list.bytes().len() + MOST_GROWTH, "{}", list.bytes.capacity());
+        assert!(list.bytes.capacity() <= list.bytes().len() + MAX_GROWTH, "{}", list.bytes.capacity());
     }
 
     #[test]

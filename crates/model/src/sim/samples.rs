@@ -14,7 +14,7 @@ pub(crate) fn particle(position: (f64, f64), velocity: (f64, f64), mass: f64, ra
     }
 }
 
-/// Returns the particle, fixed.
+/// Returns a fixed copy of a particle.
 pub(crate) fn fix(particle: Particle) -> Particle {
     Particle { fixed: true, ..particle }
 }
@@ -29,7 +29,7 @@ pub(crate) fn half_plane(point: (f64, f64), normal: (f64, f64)) -> HalfPlane {
     HalfPlane { point: Vec2::new(point.0, point.1), normal: Vec2::new(normal.0, normal.1) }
 }
 
-/// Returns a scene of these particles: explicit Euler, dt 0.5, one step, no collision handling.
+/// Returns a scene of the given particles: explicit Euler, dt 0.5, one step, no collision handling.
 pub(crate) fn scene(particles: Vec<Particle>) -> Scene {
     Scene {
         duration: 0.5,
@@ -45,7 +45,7 @@ pub(crate) fn scene(particles: Vec<Particle>) -> Scene {
     }
 }
 
-/// A source of reproducible numbers in [-1, 1) (a linear congruential generator; quality does not matter here).
+/// A source of reproducible numbers in [-1, 1), by a linear congruential generator; quality does not matter here.
 pub(crate) struct Numbers(pub u64);
 
 impl Numbers {

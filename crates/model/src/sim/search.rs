@@ -1,44 +1,45 @@
-//! Root searches: whether they may be left out, and how many there were.
+//! Options and counts of root searches.
 use serde::Serialize;
 
 /// The use of certificates instead of root searches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RootSearch {
-    /// Search only where no certificate excludes an impact. The traces are the same.
+    /// Search only if no certificate excludes an impact. The traces are the same.
     #[default]
     WhereNeeded,
-    /// Always search.
+    /// Search for every pair.
     Always,
-    /// Search always, compute the certificate too, and count disagreements.
+    /// Search for every pair, compute the certificate as well, and count disagreements.
     Audit,
 }
 
 /// Counts of the root searches so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, schemars::JsonSchema)]
 pub struct SearchCounts {
-    /// Detection calls.
+    /// The number of detection calls.
     pub calls: u64,
-    /// Calls whose roots were searched.
+    /// The number of calls whose roots were searched.
     pub searched: u64,
-    /// Calls excluded by a certificate.
+    /// The number of calls excluded by a certificate.
     pub excluded: u64,
-    /// Audit only: a certificate excluded an impact that the root finder found. Must stay zero.
+    /// The number of calls in which a certificate excluded an impact that the root finder found (audit only). Must stay
+    /// zero.
     pub disagreements: u64,
-    /// Steps of root searches ([`Zeros::steps`](fosssim_num::rpoly::Zeros::steps)).
+    /// The number of steps of root searches ([`Zeros::steps`](fosssim_num::rpoly::Zeros::steps)).
     #[serde(skip)]
     pub steps: u64,
-    /// The additional work of passes over subnormal numbers, beyond the counted one.
+    /// The additional work of passes with subnormal numbers, beyond the counted work.
     pub subnormal: u64,
 }
 
 impl SearchCounts {
-    /// Returns the work of these calls, in calls that a certificate excludes. It is the same on every machine.
+    /// Returns the work of the calls, in units of a call that a certificate excludes. It is the same on every machine.
     #[must_use]
     pub const fn work(&self) -> u64 {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
     }
 
-    /// Combines each count of both.
+    /// Combines the counts of two objects with `made`.
     fn with(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
         Self {
             calls: made(self.calls, other.calls),
@@ -57,7 +58,7 @@ impl std::ops::AddAssign for SearchCounts {
     }
 }
 
-/// The counts since `before`.
+/// The difference is the counts since `before`.
 impl std::ops::Sub for SearchCounts {
     type Output = Self;
     fn sub(self, before: Self) -> Self {
@@ -65,17 +66,17 @@ impl std::ops::Sub for SearchCounts {
     }
 }
 
-/// The cost of a root search in detection calls without one, besides its steps.
+/// The cost of a root search in units of a detection call without one, in addition to its steps.
 const SEARCH_WORK: u64 = 16;
 
-/// The factor by which processors are slower where products are subnormal (Intel's optimization manual: an assist
-/// of some 150 cycles for an operation of 4; measured by `audit cost`).
+/// The factor by which processors are slower with subnormal products (Intel's optimization manual: an assist of about
+/// 150 cycles for an operation of 4; measured by `audit cost`).
 pub(crate) const SUBNORMAL_WORK: u64 = 32;
 
-/// The least modulus whose powers, and powers of differences with it, stay normal up to the fifth.
-const SMALLEST_OF_NORMAL_POWERS: f64 = 1e-40;
+/// The minimum modulus for which powers up to the fifth, and powers of differences with it, stay normal.
+const MIN_NORMAL_BASE: f64 = 1e-40;
 
-/// Returns whether products of these numbers may be subnormal.
+/// Returns whether products of `numbers` may be subnormal.
 pub(crate) fn have_subnormal_products(numbers: &[f64]) -> bool {
-    numbers.iter().any(|number| *number != 0.0 && number.abs() < SMALLEST_OF_NORMAL_POWERS)
+    numbers.iter().any(|number| *number != 0.0 && number.abs() < MIN_NORMAL_BASE)
 }

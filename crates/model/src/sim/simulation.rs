@@ -1,4 +1,4 @@
-//! The simulation: a state and the step that advances it.
+//! The simulation: a state, and the step that advances it.
 use super::{
     bodies::Bodies,
     collision::Handler,
@@ -20,16 +20,16 @@ pub struct Simulation {
     handler: Handler,
     q_start: Vec<f64>,
     state: State,
-    /// The next step is this plus 1.
+    /// The number of completed steps; the next step is this plus 1.
     steps_done: u32,
     most_work: u64,
 }
 
 impl Simulation {
-    /// Sets the scene up at its initial state.
+    /// Creates the simulation of a scene at its initial state.
     ///
     /// # Panics
-    /// When an edge names a particle that does not exist; the strict reader rejects such scenes.
+    /// If an edge names a particle that does not exist; the strict reader rejects such scenes.
     #[must_use]
     pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
         let state = State::for_scene(scene);
@@ -51,19 +51,19 @@ impl Simulation {
         &self.state
     }
 
-    /// Returns the current state, to be replaced from outside (a submission's own, before a step is judged). Both
-    /// arrays must keep their length 2N.
+    /// Returns the current state for replacement (by a submission's state, before a step is judged). Both arrays must
+    /// keep their length 2N.
     pub fn state_mut(&mut self) -> &mut State {
         &mut self.state
     }
 
-    /// Returns the pairs of the penalty force, if the scene has one. In a contest their order depends on the steps
-    /// before.
+    /// Returns the pairs of the penalty force, if the scene has one. In a contest their order depends on the previous
+    /// steps.
     pub fn penalty_pairs(&mut self) -> Option<&mut PenaltyPairs> {
         self.forces.pairs()
     }
 
-    /// Declares that `steps` steps are done (for judging steps out of order).
+    /// Sets the number of completed steps, for judging steps out of order.
     pub fn set_steps_done(&mut self, steps: u32) {
         self.steps_done = steps;
     }
@@ -74,9 +74,10 @@ impl Simulation {
     /// [`StepError`], naming the step. The state is unspecified afterwards, and the step does not count as done.
     ///
     /// # Panics
-    /// When the state has other lengths than 2N, or a force names something that the scene does not have.
+    /// If the lengths of the state are not 2N, or a force names an object that the scene does not have.
     pub fn step(&mut self, mut observer: &mut dyn Observer) -> Result<(), StepError> {
-        // One copy of the step for all observers: their calls per pair and pass cost less than compiling more copies.
+        // One compiled copy of the step serves all observers: their calls per pair and pass cost less than compiling
+        // more copies.
         let observer = &mut observer;
         let step = self.steps_done + 1;
         observer.begin_step(step);
@@ -105,13 +106,13 @@ impl Simulation {
         self.handler.counts().work() + self.stepper.work()
     }
 
-    /// Computes pairs one by one from now on, also for observers that only want bytes. The results are the same.
-    pub fn forgo_lanes(&mut self) {
-        self.handler.forgo_lanes();
+    /// Computes later pairs one by one, even for observers that only need bytes. The results are the same.
+    pub fn disable_lanes(&mut self) {
+        self.handler.disable_lanes();
     }
 
-    /// Lets steps end with [`StepError::Work`] after the detection pass or the iteration that takes
-    /// [`Simulation::work`] beyond this.
+    /// Sets the maximum [`Simulation::work`]. The detection pass or iteration that exceeds it ends its step with
+    /// [`StepError::Work`].
     pub fn limit_work(&mut self, most: u64) {
         self.most_work = most;
     }
@@ -129,7 +130,7 @@ mod tests {
     };
     use fosssim_num::vector::Vec2;
 
-    /// Logs the events that it receives; may replace the state at the synchronization point.
+    /// Logs the events that it receives, and may replace the state at the synchronization point.
     #[derive(Default)]
     struct Log {
         lines: Vec<String>,
@@ -184,7 +185,7 @@ mod tests {
         }
     }
 
-    /// Returns the scene of trace-format.md 3: a particle that falls on a half-plane.
+    /// Returns the scene of trace-format.md 3, in which a particle falls on a half-plane.
     fn falling(collision: Collision) -> Scene {
         let mut scene = scene(vec![particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25)]);
         scene.half_planes.push(half_plane((0.0, 0.0), (0.0, 1.0)));
@@ -330,7 +331,7 @@ mod tests {
         assert!(log.lines.contains(&"miss".to_owned()));
     }
 
-    /// Both hits of one particle in a pass: the second is computed from where the first response left it.
+    /// Both hits of one particle in a pass: the second is computed from the position after the first response.
     #[test]
     fn later_pairs_of_a_pass_see_earlier_responses() {
         let mut scene = scene(vec![
@@ -341,12 +342,12 @@ mod tests {
         scene.collision = Collision::ContinuousTime { restitution: 0.0 };
         let mut log = Log::default();
         let simulation = stepped(&scene, &mut log);
-        // Restitution 0 takes the whole displacement away, so the third particle is not reached any more.
+        // Restitution 0 removes the whole displacement, so the third particle is no longer reached.
         assert_eq!(simulation.state().positions[..2], [0.0, 0.0]);
         assert_eq!(log.lines.iter().filter(|line| line.starts_with("hit")).count(), 1);
     }
 
-    /// The search of a polynomial of degree three or more would never end; particles alone never meet then.
+    /// The root search of degree three or more would never end; without edges, particles simply never meet.
     #[test]
     fn a_position_that_is_no_number_is_an_error_where_an_edge_meets_it() {
         let places = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)];

@@ -4,14 +4,14 @@ use crate::scene::Scene;
 /// Positions and velocities in trace order (`x0, y0, x1, y1, ...`), 2N each.
 #[derive(Debug, PartialEq, Default)]
 pub struct State {
-    /// Positions.
+    /// The positions of all particles.
     pub positions: Vec<f64>,
-    /// Velocities.
+    /// The velocities of all particles.
     pub velocities: Vec<f64>,
 }
 
 impl State {
-    /// Returns the state in which a scene starts.
+    /// Returns the initial state of a scene.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Self {
         let mut state = Self::default();
@@ -29,7 +29,7 @@ impl State {
     }
 }
 
-/// A state that takes over another one keeps its memory.
+/// Copying into an existing state reuses its memory.
 impl Clone for State {
     fn clone(&self) -> Self {
         Self { positions: self.positions.clone(), velocities: self.velocities.clone() }

@@ -1,11 +1,11 @@
-//! The reason why a step has no result.
+//! The reasons why a step has no result.
 use super::pair::Pair;
 use serde::{Deserialize, Serialize};
 
-/// The reason why a step has no result. The original hangs or continues with garbage here.
+/// The reason why a step has no result. The original hangs or continues with garbage in this case.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum StepError {
-    /// The root search of a pair would never end: its polynomials hold values that are not finite.
+    /// The root search of a pair would never end, because its polynomials hold values that are not finite.
     #[error("step {step}: the root search of this pair does not terminate")]
     RootSearch {
         /// The step, from 1.
@@ -25,7 +25,7 @@ pub enum StepError {
         /// The step, from 1.
         step: u32,
     },
-    /// More work than was allowed ([`Simulation::limit_work`](super::Simulation::limit_work)).
+    /// The step needs more work than allowed ([`Simulation::limit_work`](super::Simulation::limit_work)).
     #[error("step {step}: from these states collision handling takes far longer than in a run of the scene")]
     Work {
         /// The step, from 1.

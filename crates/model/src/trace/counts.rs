@@ -1,13 +1,14 @@
-//! Counting what happens inside the steps: an observer that adds up and does nothing else.
+//! Counts the events inside the steps, with an observer that only adds up.
 use crate::{
     scene::Scene,
     sim::{ByKind, Impulse, Observer, Pair, Pass, Stage, State, WantedPairs, Zone, pairs},
 };
 use std::fmt;
 
-/// Numbers of events over all steps that it received. Use it with others as a tuple: `(&mut recorder, &mut counts)`.
+/// The numbers of events over all received steps. To use it with other observers, pass a tuple: `(&mut recorder, &mut
+/// counts)`.
 ///
-/// It wants no single pairs: a pass checks every pair of the scene.
+/// It does not request single pairs, because a pass checks every pair of the scene.
 ///
 /// ```
 /// use fosssim_model::{scene::original, sim::{RootSearch, Simulation}, trace::EventCounts};
@@ -28,40 +29,40 @@ use std::fmt;
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct EventCounts {
-    /// The number of steps that were completed.
+    /// The number of completed steps.
     pub steps: u64,
-    /// Passes of `simple`.
+    /// The number of passes of `simple`.
     pub simple_passes: u64,
-    /// Passes of `continuous-time`.
+    /// The number of passes of `continuous-time`.
     pub continuous_time_passes: u64,
-    /// Passes of the impulse stage of `hybrid`.
+    /// The number of passes of the impulse stage of `hybrid`.
     pub impulse_passes: u64,
-    /// Passes of the geometric stage of `hybrid`.
+    /// The number of passes of the geometric stage of `hybrid`.
     pub geometric_passes: u64,
-    /// Detection calls per kind of pair.
+    /// The number of detection calls per kind of pair.
     pub calls: ByKind<u64>,
-    /// Calls that found a collision, per kind of pair.
+    /// The number of calls that found a collision, per kind of pair.
     pub hits: ByKind<u64>,
-    /// Polynomials of all calls.
+    /// The number of polynomials of all calls.
     pub polynomials: u64,
-    /// Responses.
+    /// The number of applied responses.
     pub impulses: u64,
-    /// Steps with a geometric stage.
+    /// The number of steps with a geometric stage.
     pub geometric_steps: u64,
-    /// Zones that were moved as rigid bodies.
+    /// The number of zones moved as rigid bodies.
     pub failsafes: u64,
-    /// Particles of the largest of them.
+    /// The number of particles of the largest moved zone.
     pub largest_zone: u64,
-    /// Largest number of zones after a merge.
+    /// The largest number of zones after a merge.
     pub most_zones: u64,
-    /// Calls in a pass.
+    /// The number of calls in a pass.
     of_pass: ByKind<u64>,
-    /// Polynomials in a pass that has any.
+    /// The number of polynomials in a pass that logs any.
     polynomials_of_pass: u64,
 }
 
 impl EventCounts {
-    /// Creates counts of zero for a simulation of this scene.
+    /// Creates counts of zero for a simulation of `scene`.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let pairs = pairs(scene);
@@ -70,7 +71,7 @@ impl EventCounts {
         Self { of_pass, polynomials_of_pass: pairs.polynomials() as u64, ..Self::default() }
     }
 
-    /// Passes of all stages.
+    /// Returns the number of passes of all stages.
     #[must_use]
     pub fn passes(&self) -> u64 {
         self.simple_passes + self.continuous_time_passes + self.impulse_passes + self.geometric_passes

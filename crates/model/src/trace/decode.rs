@@ -1,6 +1,6 @@
-//! Bytes to the blocks of a record.
+//! Decodes bytes to the blocks of a record.
 //!
-//! The functions decode in bulk from the source's window and never allocate before the bytes are there.
+//! The functions decode in bulk from the source's window, and never allocate memory for bytes that have not arrived.
 use super::{
     encode::IMPULSE_BYTES,
     frame::{LoggedImpulse, PolynomialLog},
@@ -16,13 +16,13 @@ use std::io::Read;
 
 crate::drops_leading!();
 
-/// Bytes of memory that a decoded polynomial takes besides its coefficients.
+/// The memory of a decoded polynomial in addition to its coefficients, in bytes.
 const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
 
-/// The number of polynomials for which room is made at a time.
+/// The number of polynomials for which memory is reserved at a time.
 const TOGETHER: usize = 64;
 
-/// Bytes of memory that a decoded impulse takes.
+/// The memory of a decoded impulse, in bytes.
 pub(crate) const IMPULSE_MEMORY: usize = size_of::<LoggedImpulse>();
 
 #[inline]
@@ -35,7 +35,7 @@ fn integer(bytes: &[u8]) -> i32 {
     i32::from_le_bytes(bytes.try_into().expect("four bytes"))
 }
 
-/// Replaces `out` by the next `count` numbers; fewer if the source ends; a cut number is left in the source.
+/// Replaces `out` by the next `count` numbers, or fewer if the source ends. An incomplete number stays in the source.
 pub(crate) fn numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
     out.clear();
     while out.len() < count {
@@ -50,12 +50,12 @@ pub(crate) fn numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut V
     true
 }
 
-/// Replaces `state` by the next record's; false when the source ends before its end.
+/// Replaces `state` by the next record's. Returns false if the source ends first.
 pub(crate) fn state<R: Read>(source: &mut Source<R>, particles: usize, state: &mut State) -> bool {
     numbers(source, 2 * particles, &mut state.positions) && numbers(source, 2 * particles, &mut state.velocities)
 }
 
-/// Appends up to `count` impulses from the window and gives their number; 0 only at the end of the source.
+/// Appends up to `count` impulses from the window, and returns their number; 0 only at the end of the source.
 pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<LoggedImpulse>) -> usize {
     let wanted = count.min(WINDOW / IMPULSE_BYTES) * IMPULSE_BYTES;
     let whole = source.ensure(wanted).min(wanted) / IMPULSE_BYTES;
@@ -71,7 +71,8 @@ pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut 
     whole
 }
 
-/// Returns the size of an ordinary polynomial (0 to 6, wholly in `bytes`), and the bytes after its size.
+/// Returns the size of an ordinary polynomial (0 to 6 coefficients, completely in `bytes`), and the bytes after its
+/// size.
 #[inline(always)]
 fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;
@@ -79,7 +80,7 @@ fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
     (size <= MAX_COEFFICIENTS && 8 * size <= rest.len()).then_some((size, rest))
 }
 
-/// Returns whether the next polynomial is ordinary, and wholly in the window now.
+/// Returns whether the next polynomial is ordinary and completely in the window.
 pub(crate) fn has_ordinary<R: Read>(source: &mut Source<R>) -> bool {
     if source.ensure(4) < 4 {
         return false;
@@ -88,8 +89,8 @@ pub(crate) fn has_ordinary<R: Read>(source: &mut Source<R>) -> bool {
         .is_ok_and(|size| size <= MAX_COEFFICIENTS && source.ensure(4 + 8 * size) >= 4 + 8 * size)
 }
 
-/// Appends ordinary polynomials until the first that is not ordinary, at most `most`.
-/// Gives the bytes used, their number, and, with `TRIM`, whether any leading coefficient was dropped.
+/// Appends ordinary polynomials until the first other one, at most `most`. Returns the number of bytes used, the number
+/// of polynomials, and, with `TRIM`, whether any leading coefficient was dropped.
 pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut PolynomialLog) -> (usize, u64, bool) {
     let (mut at, mut done, mut trimmed) = (0, 0, false);
     let PolynomialLog { coefficients, ends } = log;
@@ -97,7 +98,7 @@ pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut P
     while done < most
         && let Some((size, rest)) = ordinary(&bytes[at..])
     {
-        // A copy of constant length, of which a part counts, is the fastest; room for it is made for many at a time.
+        // A copy of constant length, of which a part counts, is fastest; memory is reserved for many at a time.
         if coefficients.len() < used + MAX_COEFFICIENTS {
             let more = usize::try_from(most - done).unwrap_or(usize::MAX).min(TOGETHER);
             coefficients.resize(used + more * MAX_COEFFICIENTS, 0.0);
@@ -124,8 +125,8 @@ pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut P
     (at, done, trimmed)
 }
 
-/// Passes over ordinary polynomials as [`polynomials`] decodes them, and gives the same; nothing is dropped.
-pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
+/// Skips ordinary polynomials, and returns the same as [`polynomials`]; nothing is dropped.
+pub(crate) fn skip_ordinary(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     let (mut at, mut done) = (0, 0);
     while done < most
         && let Some((size, _)) = ordinary(&bytes[at..])
@@ -136,7 +137,7 @@ pub(crate) fn pass_over(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     (at, done, false)
 }
 
-/// Returns the memory that the log's content takes, in bytes.
+/// Returns the memory of the log's content, in bytes.
 pub(crate) fn memory(log: &PolynomialLog) -> usize {
     8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.ends.len()
 }

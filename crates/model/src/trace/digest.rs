@@ -1,4 +1,4 @@
-//! Digests of traces and of their steps, as text that diffs well.
+//! Digests of traces and of their steps, as text for line-by-line comparison.
 //!
 //! The digest of a step is the beginning of the SHA-256 of its records' bytes, so a listing shows the step at which two
 //! traces begin to differ. The digest of the trace is the SHA-256 of all its bytes, including trailing ones, as
@@ -15,7 +15,7 @@ use std::{
     io::{self, Read},
 };
 
-/// SHA-256 of some bytes; prints as 64 hexadecimal digits.
+/// The SHA-256 of some bytes; prints as 64 hexadecimal digits.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Sha(pub [u8; 32]);
 
@@ -61,7 +61,7 @@ fn finish(digest: Sha256) -> Sha {
 
 /// The digests of one trace.
 ///
-/// Its text has one line per step, the initial record as step 0, and the whole trace last:
+/// The text has one line per step, with the initial record as step 0, and the whole trace last:
 ///
 /// ```text
 /// 0 8d1c1f7d7f1f6c5b
@@ -70,31 +70,31 @@ fn finish(digest: Sha256) -> Sha {
 /// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Digests {
-    /// Digest of each step's records, the initial record as step 0. An incomplete step has none.
+    /// The digest of each step's records, with the initial record as step 0. An incomplete step has none.
     pub steps: Vec<ShortDigest>,
-    /// SHA-256 of all bytes.
+    /// The SHA-256 of all bytes.
     pub sha256: Sha,
-    /// Number of all bytes.
+    /// The number of all bytes.
     pub bytes: u64,
-    /// Number of records that could be read.
+    /// The number of readable records.
     pub records: u64,
-    /// Bytes behind the last of them.
+    /// The number of bytes after the last record.
     pub trailing: u64,
-    /// Whether more bytes follow, which were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and
-    /// `trailing` count only what was read, and the digest is not the trace's.
+    /// Whether more bytes follow that were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and `trailing`
+    /// then count only the bytes that were read, and the digest is not that of the whole trace.
     pub unread: bool,
     /// The error that ended the reading before the scene's last record.
     pub stopped: Option<TraceError>,
 }
 
 impl Digests {
-    /// Reads a whole trace, in the memory of one record and eight bytes per step. A malformed trace has digests, too:
-    /// of its sound steps, and of all its bytes.
+    /// Reads a whole trace, with the memory of one record and eight bytes per step. A malformed trace has digests as
+    /// well: of its complete steps, and of all its bytes.
     pub fn from_stream(mut stream: impl Read, layout: Layout) -> Self {
         Self::walk(&mut stream, layout, &mut |_, _, _| {})
     }
 
-    /// Digests a trace; `frame` sees every record: its number, content and notes.
+    /// Digests a trace. `frame` is called for every record with its number, content and notes.
     pub(super) fn walk(
         stream: &mut dyn Read,
         layout: Layout,
@@ -122,7 +122,7 @@ impl Digests {
         let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
         let end = reader.offset();
         let Hashing { digest, bytes, .. } = all;
-        // The buffer may hold a few bytes more than were read; the number depends on the stream.
+        // The buffer may hold a few more bytes than were read, depending on the stream.
         let bytes = if unread { end } else { bytes };
         let (sha256, trailing, stopped) = (finish(digest), bytes - begin, stopped.or(failed));
         Self { steps, sha256, bytes, records, trailing, unread, stopped }
@@ -144,7 +144,7 @@ impl fmt::Display for Digests {
     }
 }
 
-/// A stream whose bytes are digested as they are read.
+/// A stream that digests its bytes as they are read.
 struct Hashing<R> {
     stream: R,
     digest: Sha256,
@@ -183,7 +183,7 @@ mod tests {
     fn the_whole_digest_is_that_of_the_file() {
         let digests = Digests::from_stream(&[0; 100][..], LAYOUT);
         assert_eq!(digests.trailing, 4);
-        // The answer of `head -c 100 /dev/zero | sha256sum`.
+        // The output of `head -c 100 /dev/zero | sha256sum`.
         let expected = "cd00e292c5970d3c5e2f0ffa5171e555bc46bfc4faddfb4a418b6840b86e79a3";
         assert_eq!(digests.sha256.to_string(), expected);
         let cut = Digests::from_stream(&[0; 50][..], LAYOUT);

@@ -1,14 +1,14 @@
-//! The blocks of a record as bytes (trace-format.md 1): little-endian, packed, into buffers that are reused.
+//! Encodes the blocks of a record (trace-format.md 1): little-endian, packed, into reused buffers.
 //!
-//! Nothing here writes to a stream; [`super::Writer`] does. No function checks what it encodes.
+//! This module does not write to a stream; [`super::Writer`] does. No function checks its input.
 use super::frame::LoggedImpulse;
 use crate::sim::State;
 
-/// Bytes of an encoded impulse: three `i32`, three `f64`.
+/// The size of an encoded impulse in bytes: three `i32`, three `f64`.
 pub(crate) const IMPULSE_BYTES: usize = 36;
 
 /// Appends `values` one after the other.
-// Not for inlining: it would be compiled where a recorder is used, at that crate's level.
+// Not inlined, because it would be compiled in the crate of each recorder, at that crate's optimization level.
 pub(crate) fn append_numbers(out: &mut Vec<u8>, values: &[f64]) {
     let start = out.len();
     out.resize(start + 8 * values.len(), 0);
@@ -23,10 +23,10 @@ pub(crate) fn append_state(out: &mut Vec<u8>, state: &State) {
     append_numbers(out, &state.velocities);
 }
 
-/// Appends a list's count. Counts above the 32-bit range cannot be written; the format has no room for them.
+/// Appends a list's count. The format has no room for counts above the 32-bit range.
 ///
 /// # Panics
-/// With a count above `i32::MAX`.
+/// If the count exceeds `i32::MAX`.
 #[inline]
 pub(crate) fn count(out: &mut Vec<u8>, count: usize) {
     let count = i32::try_from(count).expect("a list has fewer than 2^31 entries");

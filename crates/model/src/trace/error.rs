@@ -1,7 +1,7 @@
-//! Faults of a trace's bytes, and where they are.
+//! Faults of a trace's bytes, and their places.
 //!
-//! The strict [`Reader`](super::Reader) stops at them. [`Lenient`](super::Lenient) notes them, and continues as the
-//! original does.
+//! The strict [`Reader`](super::Reader) stops at a fault. [`Lenient`](super::Lenient) notes it, and continues like the
+//! original.
 use super::layout::Layout;
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
@@ -10,13 +10,13 @@ use std::{borrow::Cow, fmt};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("byte {offset}, {}: {what}", record_name(*.frame, *.step))]
 pub struct TraceError {
-    /// The record, from 0 (the initial one).
+    /// The record, from 0 (the initial record).
     pub frame: u64,
-    /// The step to which it belongs, from 1; 0 for the initial record.
+    /// The step of the record, from 1; 0 for the initial record.
     pub step: u32,
-    /// Byte offset from the beginning of the trace: where the value begins that is wrong or not there.
+    /// The byte offset from the beginning of the trace at which the wrong or missing value begins.
     pub offset: u64,
-    /// The fault, in words without position.
+    /// The fault, without its position.
     pub what: Malformation,
 }
 
@@ -26,7 +26,7 @@ impl TraceError {
     }
 }
 
-/// Returns a record and its step in words.
+/// Returns a record and its step as text.
 fn record_name(record: u64, step: u32) -> String {
     match step {
         0 => format!("record {record} (initial state)"),
@@ -44,7 +44,7 @@ pub enum List {
 }
 
 impl List {
-    /// Returns the fewest bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
+    /// Returns the minimum number of bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
     #[must_use]
     pub const fn entry_bytes(self) -> u64 {
         match self {
@@ -66,7 +66,7 @@ impl fmt::Display for List {
 /// The ways in which a trace can be malformed (trace-format.md 1, 2).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum Malformation {
-    /// No byte at all.
+    /// The trace is empty.
     #[error("the trace is empty; was the program started with -o, and did it run?")]
     Empty,
     /// The bytes end between two records.
@@ -76,54 +76,54 @@ pub enum Malformation {
         if *records == 1 { "record" } else { "records" }
     )]
     TooFewRecords {
-        /// Complete records.
+        /// The number of complete records.
         records: u64,
-        /// Records of a complete trace of this scene.
+        /// The number of records of a complete trace of the scene.
         expected: u64,
     },
     /// The bytes end inside positions and velocities.
     #[error("positions and velocities need {needs} bytes, but {left} are left; the trace is cut or of another scene")]
     State {
-        /// 32 bytes per particle.
+        /// The number of bytes needed: 32 per particle.
         needs: u64,
-        /// Bytes left.
+        /// The number of remaining bytes.
         left: u64,
     },
     /// The bytes end before or inside a list's count.
     #[error("the count of the {list} list is cut: {left} of its 4 bytes are left")]
     CountCut {
-        /// Which list.
+        /// The list concerned.
         list: List,
-        /// Bytes left, 0 to 3.
+        /// The number of remaining bytes, 0 to 3.
         left: u64,
     },
-    /// A count below zero.
+    /// A count is negative.
     #[error("the {list} list has the negative count {count}; the trace is damaged or of another scene")]
     NegativeCount {
-        /// Which list.
+        /// The list concerned.
         list: List,
         /// The count.
         count: i32,
     },
-    /// A count that the rest of the trace has no room for.
+    /// A count is too large for the rest of the trace.
     #[error(
         "the {list} list claims {count} entries, at least {needs} bytes, but {left} are left; the trace is cut or of \
          another scene"
     )]
     CountBeyondEnd {
-        /// Which list.
+        /// The list concerned.
         list: List,
         /// The count.
         count: i32,
-        /// The fewest bytes of this number of entries.
+        /// The minimum number of bytes of `count` entries.
         needs: u64,
-        /// Bytes left after the count.
+        /// The number of bytes after the count.
         left: u64,
     },
     /// The bytes end before or inside a polynomial's size.
     #[error("the trace ends before polynomial {polynomial} of {count}")]
     PolynomialCut {
-        /// Number of the polynomial in the list, from 0.
+        /// The number of the polynomial in the list, from 0.
         polynomial: u64,
         /// The list's count.
         count: i32,
@@ -135,50 +135,50 @@ pub enum Malformation {
         8 * i64::from(*.size)
     )]
     SizeBeyondEnd {
-        /// Number of the polynomial in the list, from 0.
+        /// The number of the polynomial in the list, from 0.
         polynomial: u64,
         /// The claimed size.
         size: i32,
-        /// Bytes left after the size.
+        /// The number of bytes after the size.
         left: u64,
     },
-    /// A size below zero, read as zero.
+    /// A size is negative, and is read as zero.
     #[error("polynomial {polynomial} has the negative size {size}")]
     NegativeSize {
-        /// Number of the polynomial in the list, from 0.
+        /// The number of the polynomial in the list, from 0.
         polynomial: u64,
         /// The claimed size.
         size: i32,
     },
-    /// More coefficients than any detection polynomial has (six).
+    /// A polynomial has more coefficients than any detection polynomial (six).
     #[error("polynomial {polynomial} has {size} coefficients, but no polynomial of the detection has more than 6")]
     OversizedPolynomial {
-        /// Number of the polynomial in the list, from 0.
+        /// The number of the polynomial in the list, from 0.
         polynomial: u64,
         /// The claimed size.
         size: i32,
     },
-    /// An impulse whose kind is not 0, 1 or 2.
+    /// An impulse has a kind other than 0, 1 or 2.
     #[error("impulse {impulse} has the unknown type {kind} (known: 0, 1, 2)")]
     UnknownKind {
-        /// Number of the impulse in the list, from 0.
+        /// The number of the impulse in the list, from 0.
         impulse: u64,
         /// The claimed kind.
         kind: i32,
     },
-    /// An impulse that names an object which the scene does not have.
+    /// An impulse names an object that the scene does not have.
     #[error("impulse {impulse} names {object} {index}, but the scene has {count}")]
     IndexOutOfRange {
-        /// Number of the impulse in the list, from 0.
+        /// The number of the impulse in the list, from 0.
         impulse: u64,
-        /// The kind of object that it names: `particle`, `edge` or `half-plane`.
+        /// The kind of the missing object: `particle`, `edge` or `half-plane`.
         object: Cow<'static, str>,
-        /// The index.
+        /// The index of the missing object.
         index: i32,
-        /// The number of them.
+        /// The number of objects of this kind in the scene.
         count: usize,
     },
-    /// A record that does not fit into the memory for one record.
+    /// A record does not fit into the memory for one record.
     #[error(
         "the record needs more than {limit} bytes of memory, more than this program sets aside for one; the trace is \
          damaged or of another scene"
@@ -187,7 +187,7 @@ pub enum Malformation {
         /// The limit in bytes.
         limit: u64,
     },
-    /// More bytes behind the last record than are read there.
+    /// More bytes follow the last record than are read.
     #[error(
         "more than {limit} bytes follow the last record; they were not all read; the trace is of another scene or \
          never ends"
@@ -196,7 +196,7 @@ pub enum Malformation {
         /// The limit in bytes.
         limit: u64,
     },
-    /// A record of the right length that is longer than its kept part.
+    /// A record has the right number of polynomials, but only a part of them was kept.
     #[error(
         "the record has {logged} polynomials, as many as it should have, but this program compares the first {kept} of \
          a record of this scene only"
@@ -204,20 +204,20 @@ pub enum Malformation {
     BeyondKept {
         /// The number of polynomials in the record.
         logged: usize,
-        /// The number of those that were kept.
+        /// The number of kept polynomials.
         kept: usize,
     },
     /// The stream reported an error.
     #[error("reading failed: {message}")]
     Io {
-        /// The error's text.
+        /// The text of the error.
         message: String,
     },
 }
 
 impl Malformation {
-    /// Positions and velocities that are cut, or not there at all, behind `records` records, of which `whole` were
-    /// whole. `left` bytes are left.
+    /// Returns the fault of missing or incomplete positions and velocities after `records` records, of which `whole`
+    /// were complete. `left` is the number of remaining bytes.
     pub(super) fn no_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
         match (left, records) {
             (0, 0) => Self::Empty,

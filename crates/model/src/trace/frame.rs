@@ -16,7 +16,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// Returns whether both frames hold the same, bit for bit.
+    /// Returns whether both frames are identical, bit for bit.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         same_bits(&self.state.positions, &other.state.positions)
@@ -28,19 +28,20 @@ impl Frame {
     }
 }
 
-/// An impulse as a trace holds it: nothing about it is checked.
+/// An impulse as in the trace; nothing about it is checked.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "ImpulseForm", into = "ImpulseForm")]
 pub struct LoggedImpulse {
-    /// 0 particle-particle, 1 particle-edge, 2 particle-half-plane; anything else in a damaged trace.
+    /// The kind of pair: 0 particle-particle, 1 particle-edge, 2 particle-half-plane; any other number in a damaged
+    /// trace.
     pub kind: i32,
-    /// Index of the particle.
+    /// The index of the particle.
     pub first: i32,
-    /// Index of the particle, edge or half-plane.
+    /// The index of the second particle, edge or half-plane.
     pub second: i32,
-    /// Contact normal.
+    /// The contact normal.
     pub normal: Vec2,
-    /// Time of impact as a fraction of the step.
+    /// The time of impact as a fraction of the step.
     pub time: f64,
 }
 
@@ -49,12 +50,12 @@ pub struct LoggedImpulse {
 pub struct ImpulsePair {
     /// The name of the kind; `unknown` in a damaged trace.
     kind: Cow<'static, str>,
-    /// The number in place of an unknown kind.
+    /// The number of an unknown kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     code: Option<i32>,
-    /// Index of the particle.
+    /// The index of the particle.
     first: i64,
-    /// Index of the particle, edge or half-plane.
+    /// The index of the second particle, edge or half-plane.
     second: i64,
 }
 
@@ -63,7 +64,7 @@ pub struct ImpulsePair {
 struct ImpulseForm {
     /// The objects that collide.
     pair: ImpulsePair,
-    /// From the first object to the second, not normalized.
+    /// The contact normal, from the first object to the second, not normalized.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "[fosssim_num::written::Number; 2]")]
     normal: Vec2,
@@ -105,20 +106,20 @@ impl TryFrom<ImpulseForm> for LoggedImpulse {
 }
 
 impl LoggedImpulse {
-    /// Returns the kind of its pair; none in a damaged trace.
+    /// Returns the kind of the impulse's pair; `None` in a damaged trace.
     #[must_use]
     pub fn kind(&self) -> Option<PairKind> {
         PairKind::from_code(self.kind)
     }
 
-    /// Returns the impulse's pair; `None` if it names no possible pair.
+    /// Returns the impulse's pair; `None` if the pair is impossible.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);
         Some(Pair { kind: self.kind()?, first, second })
     }
 
-    /// Returns whether both are equal bit for bit.
+    /// Returns whether both impulses are identical, bit for bit.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let numbers = |impulse: &Self| [impulse.normal.x, impulse.normal.y, impulse.time];
@@ -149,9 +150,9 @@ impl fmt::Display for LoggedImpulse {
 /// The polynomials of a frame, in one array.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct PolynomialLog {
-    /// All coefficients, polynomial after polynomial, highest power first, as logged.
+    /// All coefficients, polynomial by polynomial, highest power first, as logged.
     pub coefficients: Vec<f64>,
-    /// For each polynomial the end of its coefficients in `coefficients`.
+    /// The end of each polynomial's coefficients in `coefficients`.
     pub ends: Vec<usize>,
 }
 
@@ -163,14 +164,14 @@ impl PolynomialLog {
         self.ends.len()
     }
 
-    /// Returns whether there is none.
+    /// Returns whether there are no polynomials.
     #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.ends.is_empty()
     }
 
-    /// Empties the log and keeps its memory.
+    /// Empties the log, and keeps its memory.
     pub fn clear(&mut self) {
         self.coefficients.clear();
         self.ends.clear();
@@ -185,7 +186,7 @@ impl PolynomialLog {
     /// Returns the coefficients of polynomial `index`.
     ///
     /// # Panics
-    /// When there is no such polynomial.
+    /// If there is no such polynomial.
     #[inline]
     #[must_use]
     pub fn get(&self, index: usize) -> &[f64] {

@@ -1,6 +1,6 @@
 //! Finds the detection call that logs each polynomial of a step.
 //!
-//! A trace does not contain it. The step is simulated again from the state before it, and the calls are counted.
+//! A trace does not contain the calls. The step is simulated again from its start state, and the calls are counted.
 use crate::{
     scene::Scene,
     sim::{Detection, Observer, Pair, Pass, RootSearch, Simulation, State},
@@ -9,17 +9,17 @@ use crate::{
 /// The origin of a polynomial of a step's end record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Label {
-    /// The detection pass.
+    /// The detection pass of the call.
     pub pass: Pass,
-    /// The pair.
+    /// The pair of the call.
     pub pair: Pair,
-    /// Number of the polynomial within its call, from 0.
+    /// The number of the polynomial within its call, from 0.
     pub number: usize,
 }
 
 /// Returns the labels of the polynomials that the reference logs in the step after `before`, in the order of the trace.
-/// A submission's list has the same labels as long as it has the same length. Empty when the step has no result, or
-/// when `before` has another number of particles than the scene.
+/// A submission's list has the same labels as long as it has the same length. Empty if the step has no result, or if
+/// the number of particles in `before` differs from the scene's.
 #[must_use]
 pub fn labels(scene: &Scene, before: &State) -> Vec<Label> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);

@@ -1,21 +1,21 @@
-//! Which blocks a record of a given scene has, and how many records there are.
+//! The blocks of a scene's records, and the number of records.
 use crate::{assignments::ImpulseList, scene::Scene};
 
-/// The shape of a trace, which the scene decides (trace-format.md 1, 2).
+/// The structure of a scene's traces (trace-format.md 1, 2).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Layout {
-    /// Number of particles N.
+    /// The number of particles N.
     pub particles: usize,
     /// Whether records hold an impulse list (`simple`, `continuous-time`, `hybrid`).
     pub impulses: bool,
     /// Whether records hold polynomials and each step has a mid record (`continuous-time`, `hybrid`).
     pub polynomials: bool,
-    /// Number of steps.
+    /// The number of steps.
     pub steps: u32,
 }
 
 impl Layout {
-    /// Returns the layout of this scene's traces.
+    /// Returns the layout of the traces of `scene`.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Self {
         let records = scene.collision.handling().records;
@@ -23,13 +23,13 @@ impl Layout {
         Self { particles: scene.particles.len(), impulses, polynomials, steps: scene.steps() }
     }
 
-    /// Bytes of positions and velocities: 32 N.
+    /// Returns the number of bytes of positions and velocities, 32 N.
     #[must_use]
     pub const fn state_bytes(&self) -> usize {
         32 * self.particles
     }
 
-    /// Records per step: 2 with a mid record, else 1.
+    /// Returns the number of records per step: 2 with a mid record, otherwise 1.
     #[must_use]
     pub const fn records_per_step(&self) -> u32 {
         if self.polynomials { 2 } else { 1 }
@@ -41,15 +41,15 @@ impl Layout {
         1 + u64::from(self.records_per_step()) * u64::from(self.steps)
     }
 
-    /// Returns whether a trace of this many bytes holds a state for each step and nothing else, where records hold
-    /// more: so write programs whose library knows no collisions.
+    /// Returns whether a trace of `bytes` bytes holds only a state for each step although records of this layout hold
+    /// more. Programs whose library has no collisions write such traces.
     #[must_use]
     pub fn is_states_only(&self, bytes: u64) -> bool {
         let more = self.impulses || self.polynomials;
         more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
     }
 
-    /// Returns the step to which record `record` belongs, from 1; 0 for the initial record.
+    /// Returns the step of record `record`, from 1; 0 for the initial record.
     #[must_use]
     pub fn step_of(&self, record: u64) -> u32 {
         u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)
@@ -61,7 +61,7 @@ impl Layout {
         self.polynomials && record % 2 == 1
     }
 
-    /// Returns the number of the end record of step `step` (0: the initial record).
+    /// Returns the number of the end record of step `step`; 0 is the initial record.
     #[must_use]
     pub fn end_record(&self, step: u32) -> u64 {
         u64::from(self.records_per_step()) * u64::from(step)

@@ -1,11 +1,12 @@
-//! The original's reading, bit for bit (oracle-behavior.md 5): what it accepts, what it skips, where it stops.
+//! The original's trace reader, reproduced bit for bit (oracle-behavior.md 5): what it accepts, what it skips, and
+//! where it stops.
 //!
-//! A stream that has run out stays failed; a value that is cut takes the existing bytes as its low-order ones;
-//! polynomials are read without any check. The one thing not reproduced is how the original dies of nonsense counts:
-//! [`Unreadable::Memory`] is the answer instead.
+//! A stream that has ended stays failed; the bytes of an incomplete value become its low-order bytes; polynomials are
+//! read without any check. The original's crash on nonsense counts is not reproduced: the result is
+//! [`Unreadable::Memory`] instead.
 //!
-//! Memory is bounded by what a record of the scene can hold ([`record_memory`]). Polynomials beyond that are counted
-//! and not kept: the reference never logs as many, so their number alone is the finding.
+//! Memory is bounded by the maximum size of a record of the scene ([`record_memory`]). Polynomials beyond that are
+//! counted and not kept. The reference never logs as many, so their number alone is the finding.
 use super::{
     decode,
     error::{List, Malformation, TraceError},
@@ -23,21 +24,22 @@ use std::io::Read;
 
 crate::drops_leading!();
 
-/// Memory that the lists of one record may take together at most, in bytes, whatever the scene.
+/// The maximum memory of the lists of one record in any scene, in bytes.
 const LIMIT: usize = 256 * 1024 * 1024;
 
-/// Memory that they may take in any scene, in bytes. With a lower limit, impulse lists that are padded beyond reason
-/// are rejected before the original runs out of memory.
+/// The memory that the lists may take in every scene, in bytes. With a lower limit, excessively padded impulse lists
+/// would be rejected before the original runs out of memory.
 const FLOOR: usize = 32 * 1024 * 1024;
 
-/// Memory of the longest polynomial that a detection logs, in bytes.
+/// The memory of the longest polynomial that a detection logs, in bytes.
 const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::<usize>();
 
-/// The number of coefficients that are kept of a longer polynomial; any number above [`MAX_COEFFICIENTS`] is as wrong.
-const LONGEST_POLYNOMIAL: usize = 4096;
+/// The maximum number of coefficients that are kept of a polynomial. Every number above [`MAX_COEFFICIENTS`] is equally
+/// wrong.
+const MAX_KEPT_COEFFICIENTS: usize = 4096;
 
-/// Returns the memory that the lists of one record of this scene's traces may take, in bytes: the memory of the
-/// polynomials of all detection passes that a step can make (collisions.md 4 and 5), within bounds.
+/// Returns the memory that the lists of one record of the scene's traces may take, in bytes. It is the memory of the
+/// polynomials of all possible detection passes of a step (collisions.md 4 and 5), within bounds.
 #[must_use]
 pub fn record_memory(scene: &Scene) -> usize {
     let particles = scene.particles.len();
@@ -48,11 +50,11 @@ pub fn record_memory(scene: &Scene) -> usize {
     pass.saturating_mul(most_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(FLOOR, LIMIT)
 }
 
-/// Returns the detection passes that a step makes at most.
+/// Returns the maximum number of detection passes in a step.
 fn most_passes(scene: &Scene) -> usize {
     match scene.collision {
-        // Two passes of the geometric part, and one more for each change of the zones: with every change a particle or
-        // the half-plane flag is added to a zone, or two zones become one.
+        // Two passes of the geometric part, and one more for each change of the zones: every change adds a particle or
+        // the half-plane flag to a zone, or joins two zones.
         Collision::Hybrid { max_iterations, .. } => {
             usize::try_from(max_iterations).unwrap_or(0).saturating_add(2 + 3 * scene.particles.len())
         }
@@ -60,20 +62,21 @@ fn most_passes(scene: &Scene) -> usize {
     }
 }
 
-/// The original stores as many impulses as the count claims before it reads the stream, and runs out of the corpus's 6
-/// GiB of address space above this count (48 bytes each, in an array that doubles).
+/// The maximum number of impulses that the original can store. It allocates the claimed count before it reads the
+/// stream, and a larger count exceeds the corpus's 6 GiB of address space (48 bytes each, in an array that doubles).
 const STORABLE_IMPULSES: usize = 1 << 26;
 
-/// As many polynomials fit there (24 bytes each without their coefficients, in an array that doubles).
+/// The maximum number of polynomials that the original can store (24 bytes each without their coefficients, in an array
+/// that doubles).
 const STORABLE_POLYNOMIALS: u64 = 1 << 27;
 
-/// And a polynomial of this number of coefficients.
+/// The maximum number of coefficients of a polynomial that the original can store.
 const STORABLE_COEFFICIENTS: usize = 1 << 28;
 
-/// At most this many notes are kept per record.
-pub(super) const NOTES: usize = 16;
+/// The maximum number of notes that are kept per record.
+pub(super) const MAX_NOTES: usize = 16;
 
-/// A record as the original reads it. Buffers are reused from record to record.
+/// A record as read by the original. Buffers are reused from record to record.
 #[derive(Debug, Clone, Default)]
 pub struct LenientFrame {
     /// Positions and velocities.
@@ -81,76 +84,78 @@ pub struct LenientFrame {
     /// The impulse list; empty if the layout has none.
     pub impulses: Vec<LoggedImpulse>,
     /// The polynomial list **without its small leading coefficients** (|c| < 1e-12; a NaN is kept); empty if the layout
-    /// has none. Only its beginning, if it is longer than the reader's limit allows.
+    /// has none. If the list exceeds the reader's limit, only its beginning is kept.
     pub polynomials: PolynomialLog,
-    /// The number of polynomials in the list, those that are not kept included.
+    /// The number of polynomials in the list, including those that are not kept.
     pub logged: usize,
-    /// Whether the trace has the list exactly as `polynomials` is: nothing was trimmed, cut or negative.
+    /// Whether the trace's list is identical to `polynomials`: nothing was trimmed, truncated or negative.
     pub plain: bool,
-    /// The first damage that the original passes over in this record.
+    /// The first damage in the record that the original ignores.
     pub note: Option<TraceError>,
 }
 
 impl LenientFrame {
-    /// Returns whether the polynomial list is longer than its kept part.
+    /// Returns whether only a part of the polynomial list was kept.
     #[must_use]
     pub fn is_cut(&self) -> bool {
         self.logged > self.polynomials.len()
     }
 
-    /// Frees the memory of lists that are larger than nearly all lists are.
+    /// Frees the memory of lists that are much larger than usual.
     pub fn shrink(&mut self) {
-        /// In bytes. Lowered, ordinary records are allocated again and again.
-        const ORDINARY: usize = 4 << 20;
-        if decode::IMPULSE_MEMORY * self.impulses.capacity() > ORDINARY {
+        /// The size up to which memory is kept, in bytes. With a lower size, ordinary records would be allocated again
+        /// and again.
+        const MAX_REUSED_BYTES: usize = 4 << 20;
+        if decode::IMPULSE_MEMORY * self.impulses.capacity() > MAX_REUSED_BYTES {
             self.impulses = Vec::new();
         }
         let log = &self.polynomials;
-        if 8 * log.coefficients.capacity() + size_of::<usize>() * log.ends.capacity() > ORDINARY {
+        if 8 * log.coefficients.capacity() + size_of::<usize>() * log.ends.capacity() > MAX_REUSED_BYTES {
             self.polynomials = PolynomialLog::default();
             self.logged = 0;
         }
     }
 }
 
-/// The reason why the original reads no further.
+/// The reason why the original stops reading.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{at}")]
 pub struct ReadStop {
     /// The part that could not be read.
     pub cause: Unreadable,
-    /// The damage.
+    /// The damage and its place.
     pub at: TraceError,
 }
 
-/// Which part of a record could not be read, or why; the original has a message for each of the first two.
+/// The part of a record that could not be read, or the reason. The original has a message for each of the first two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unreadable {
     /// "Failed to load timestep": the bytes end before or inside positions and velocities.
     State,
     /// "Error while trying to deserialize time step impulses": the bytes end inside the impulse list.
     Impulses,
-    /// A count that no file could satisfy: the original runs out of memory (SIGABRT), or would with more bytes than we
-    /// read.
+    /// A count is larger than any file allows: the original runs out of memory (SIGABRT), or would with more bytes than
+    /// this reader reads.
     Memory,
-    /// A limit of ours: the record is larger than any sound one of the scene, and the original reads on.
+    /// A limit of this program is exceeded: the record is larger than any correct record of the scene, and the original
+    /// continues reading.
     Limit,
     /// The reader reported an error of the operating system. The original takes it for the end of the file.
     Io,
 }
 
-/// Reads records as the original does.
+/// Reads records like the original.
 #[derive(Debug)]
 pub struct Lenient<R> {
     pub(super) source: Source<R>,
     layout: Layout,
     record: u64,
     begin: u64,
-    /// Once a read has found fewer bytes than it wanted, no read finds any.
+    /// Whether a read has found too few bytes; later reads then find none.
     failed: bool,
     notes: Vec<TraceError>,
     limit: usize,
-    /// Whether damage ends the reading, and all coefficients are kept: the way of [`Reader`](super::Reader).
+    /// Whether damage stops the reading, and all coefficients are kept, as in [`Reader`](super::Reader).
     strict: bool,
 }
 
@@ -171,23 +176,23 @@ impl<R: Read> Lenient<R> {
         Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: LIMIT, strict: false }
     }
 
-    /// Makes the first damage end the reading.
+    /// Lets the first damage stop the reading.
     pub(super) fn strict(mut self) -> Self {
         self.strict = true;
         self
     }
 
-    /// Bounds the memory that the lists of one record may take, in bytes; see [`record_memory`].
+    /// Limits the memory that the lists of one record may take, in bytes; see [`record_memory`].
     #[must_use]
     pub fn with_limit(mut self, bytes: usize) -> Self {
         self.limit = bytes;
         self
     }
 
-    /// Replaces `frame` by the next record, whether or not the scene has as many.
+    /// Replaces `frame` by the next record, whether or not the scene has that many records.
     ///
     /// # Errors
-    /// [`ReadStop`]; `frame` is unspecified then.
+    /// [`ReadStop`]; `frame` is then unspecified.
     pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         self.begin = self.source.offset();
         self.notes.clear();
@@ -213,7 +218,7 @@ impl<R: Read> Lenient<R> {
         self.record
     }
 
-    /// Returns byte offset of the last record (of the next one before the first call of [`Lenient::next`]).
+    /// Returns the byte offset of the last record (of the next record before the first call of [`Lenient::next`]).
     #[must_use]
     pub fn record_offset(&self) -> u64 {
         self.begin
@@ -225,7 +230,7 @@ impl<R: Read> Lenient<R> {
         self.source.offset()
     }
 
-    /// Returns whether bytes follow; the original never reads any behind the last record.
+    /// Returns whether bytes follow; the original never reads bytes after the last record.
     pub fn has_more(&mut self) -> bool {
         self.source.ensure(1) > 0
     }
@@ -243,19 +248,19 @@ impl<R: Read> Lenient<R> {
         }
     }
 
-    /// Returns whether the polynomials fill the memory that they may take.
+    /// Returns whether the polynomials fill the allowed memory.
     fn is_full(&self, frame: &LenientFrame) -> bool {
         decode::memory(&frame.polynomials) > self.limit
     }
 
-    /// Returns the last record's notes.
+    /// Returns the notes about the last record.
     pub(super) fn notes(&self) -> &[TraceError] {
         &self.notes
     }
 
-    /// Notes what keeps no reader from reading on.
+    /// Notes damage that no reader stops at.
     fn note(&mut self, offset: u64, what: Malformation) {
-        if self.notes.len() < NOTES {
+        if self.notes.len() < MAX_NOTES {
             self.notes.push(self.error(offset, what));
         }
     }
@@ -269,7 +274,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Rejects, for the strict reader, a record whose polynomials take too much memory.
+    /// Stops the strict reader at a record whose polynomials take too much memory.
     fn check_room(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
         if self.strict && self.is_full(frame) {
             let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
@@ -278,7 +283,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Reads into `value`: missing bytes leave the high-order ones as they are.
+    /// Reads into `value`; if bytes are missing, the high-order bytes stay unchanged.
     fn bytes<const N: usize>(&mut self, value: &mut [u8; N]) {
         if !self.failed {
             let there = self.source.ensure(N).min(N);
@@ -296,7 +301,7 @@ impl<R: Read> Lenient<R> {
     }
 
     fn read_state(&mut self, state: &mut State) -> Result<(), ReadStop> {
-        // The original took the record before for complete, although the bytes ended in it.
+        // The original took the previous record for complete, although the bytes ended in it.
         let whole = self.record - u64::from(self.failed && self.record > 0);
         self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
         if !self.failed {
@@ -348,7 +353,7 @@ impl<R: Read> Lenient<R> {
         while done < entries && !self.failed {
             let (window, most) = (self.source.window(), entries - done);
             let (used, ordinary, trimmed) = if self.is_full(frame) {
-                decode::pass_over(window, most)
+                decode::skip_ordinary(window, most)
             } else if self.strict {
                 decode::polynomials::<false>(window, most, &mut frame.polynomials)
             } else {
@@ -367,7 +372,7 @@ impl<R: Read> Lenient<R> {
                 done += 1;
             }
         }
-        // Every polynomial behind the end has size 0.
+        // Every polynomial after the end has size 0.
         let missing = entries - done;
         if missing > 0 && entries > STORABLE_POLYNOMIALS {
             let left = self.source.offset() - begin;
@@ -382,7 +387,7 @@ impl<R: Read> Lenient<R> {
         Ok(())
     }
 
-    /// Reads one polynomial the long way: any size, the stream may end anywhere.
+    /// Reads one polynomial without the fast path: of any size, and the stream may end anywhere.
     fn polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), ReadStop> {
         let offset = self.source.offset();
         let written = self.integer();
@@ -402,9 +407,9 @@ impl<R: Read> Lenient<R> {
         let begin = self.source.offset();
         let keeps = !self.is_full(frame);
         let start = frame.polynomials.coefficients.len();
-        let most = if self.strict { usize::MAX } else { start + if keeps { LONGEST_POLYNOMIAL } else { 0 } };
+        let most = if self.strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
         let mut is_leading = !self.strict;
-        // The bytes that were read so far and not dropped, as the original keeps them, coefficient by coefficient.
+        // The bytes of each coefficient that were read, as the original keeps them.
         let mut value = [0; 8];
         for read in 0..size {
             self.bytes(&mut value);
@@ -417,7 +422,7 @@ impl<R: Read> Lenient<R> {
             let coefficient = f64::from_le_bytes(value);
             is_leading &= coefficient.abs() < LEADING_COEFFICIENT;
             frame.plain &= !is_leading;
-            // Once the stream has failed, all the others repeat this one.
+            // Once the stream has failed, all other coefficients repeat this one.
             let times = if self.failed { size - read } else { 1 };
             if !is_leading {
                 let log = &mut frame.polynomials;

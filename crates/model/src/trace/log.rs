@@ -1,4 +1,4 @@
-//! The part of a trace that a step writes: its lists, and when which of them is part of a record (trace-format.md 2).
+//! The part of a trace that a step writes: its lists, and when they are added to a record (trace-format.md 2).
 use super::{
     encode::{self, IMPULSE_BYTES},
     frame::LoggedImpulse,
@@ -6,14 +6,14 @@ use super::{
 };
 use crate::sim::{Detection, Impulse, Pass, PolynomialBytes, Stage, State};
 
-/// The lists of a step so far, as a trace holds them.
+/// The lists of a step so far, in the bytes of a trace.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Log {
-    /// The bytes of impulses.
+    /// The bytes of the impulses.
     impulses: Vec<u8>,
-    /// Polynomials.
+    /// The polynomials of the step.
     pub(super) polynomials: PolynomialBytes,
-    /// Whether the responses of the current pass are in the trace: those of `hybrid` never are.
+    /// Whether the trace logs the responses of the current pass; those of `hybrid` are never logged.
     logs_impulses: bool,
 }
 
@@ -24,7 +24,7 @@ impl Log {
         self.begin_step_behind();
     }
 
-    /// Begins a step and keeps the polynomials of earlier steps.
+    /// Begins a step, and keeps the polynomials of earlier steps.
     pub(super) fn begin_step_behind(&mut self) {
         self.impulses.clear();
         self.polynomials.begin();
@@ -41,7 +41,7 @@ impl Log {
         detection.polynomials.iter().for_each(|polynomial| self.polynomials.push(polynomial.coefficients()));
     }
 
-    /// Appends an impulse, if it belongs to the trace.
+    /// Appends an impulse, if the trace logs it.
     pub(super) fn impulse(&mut self, impulse: &Impulse) {
         if self.logs_impulses {
             encode::impulse(&mut self.impulses, &LoggedImpulse::from(*impulse));
@@ -53,7 +53,7 @@ impl Log {
         self.impulses.len() / IMPULSE_BYTES
     }
 
-    /// Appends a record with these lists, without its polynomials.
+    /// Appends a record with the current lists, without its polynomials.
     pub(super) fn write_head(&self, out: &mut Vec<u8>, layout: Layout, state: &State) {
         encode::append_state(out, state);
         if layout.impulses {

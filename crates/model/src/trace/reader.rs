@@ -1,19 +1,19 @@
-//! The strict reader: [`Lenient`], which ends at the first damage instead of passing over it.
+//! The strict reader, which is a [`Lenient`] that stops at the first damage.
 //!
-//! Memory is bounded by one frame whatever the trace's size, and grows only with bytes that arrive.
+//! Memory is bounded by one frame, whatever the trace's size, and grows only with bytes that arrive.
 use super::{
     error::{List, Malformation, TraceError},
     frame::{Frame, LoggedImpulse},
     layout::Layout,
-    lenient::{Lenient, LenientFrame, NOTES},
+    lenient::{Lenient, LenientFrame, MAX_NOTES},
 };
 use crate::{scene::Scene, sim::PairKind};
 use std::{io::Read, mem::swap};
 
-/// At most this many bytes behind the last record are read, 64 MiB: a stream need not have an end.
+/// The maximum number of bytes that are read after the last record, 64 MiB, because a stream may be endless.
 pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 
-/// Reads frame after frame (trace-format.md 1, 2).
+/// Reads frame by frame (trace-format.md 1, 2).
 ///
 /// ```
 /// use fosssim_model::trace::{Frame, Layout, Reader};
@@ -35,7 +35,7 @@ pub struct Reader<R> {
     records: Lenient<R>,
     read: LenientFrame,
     layout: Layout,
-    /// Edges and half-planes of the scene, where they are known.
+    /// The numbers of edges and half-planes of the scene, if known.
     objects: Option<(usize, usize)>,
     notes: Vec<TraceError>,
     stopped: Option<TraceError>,
@@ -47,17 +47,17 @@ impl<'a> Reader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
     #[must_use]
     pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
-        Self::over(Lenient::from_slice(trace, layout), layout)
+        Self::from_records(Lenient::from_slice(trace, layout), layout)
     }
 }
 
 impl<R: Read> Reader<R> {
     /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
-        Self::over(Lenient::new(stream, layout), layout)
+        Self::from_records(Lenient::new(stream, layout), layout)
     }
 
-    fn over(records: Lenient<R>, layout: Layout) -> Self {
+    fn from_records(records: Lenient<R>, layout: Layout) -> Self {
         Self {
             records: records.strict(),
             read: LenientFrame::default(),
@@ -70,7 +70,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Makes the reader note impulses that name edges or half-planes which the scene does not have.
+    /// Lets the reader note impulses that name edges or half-planes missing in the scene.
     #[must_use]
     pub fn with_scene(mut self, scene: &Scene) -> Self {
         self.objects = Some((scene.edges.len(), scene.half_planes.len()));
@@ -84,10 +84,10 @@ impl<R: Read> Reader<R> {
         self
     }
 
-    /// Replaces `frame` by the next record; false behind the scene's last record.
+    /// Replaces `frame` by the next record. Returns false after the scene's last record.
     ///
     /// # Errors
-    /// [`TraceError`]; reading ends then, and every later call gives the same error.
+    /// [`TraceError`]; reading then ends, and every later call returns the same error.
     pub fn next(&mut self, frame: &mut Frame) -> Result<bool, TraceError> {
         if let Some(error) = &self.stopped {
             return Err(error.clone());
@@ -112,18 +112,18 @@ impl<R: Read> Reader<R> {
         swap(&mut frame.polynomials, &mut self.read.polynomials);
         self.note_impulses(&frame.impulses);
         self.notes.extend_from_slice(self.records.notes());
-        self.notes.truncate(NOTES);
+        self.notes.truncate(MAX_NOTES);
         Ok(true)
     }
 
-    /// Oddities of the last record that do not keep it from being read: impulses of unknown type or of objects that do
-    /// not exist, sizes below 0 (read as 0) or above 6. At most 16.
+    /// Returns oddities of the last record that do not stop the reading: impulses of unknown type or with missing
+    /// objects, sizes below 0 (read as 0) or above 6. At most 16.
     #[must_use]
     pub fn notes(&self) -> &[TraceError] {
         &self.notes
     }
 
-    /// Bytes of the last record, with [`Reader::keeping_raw`].
+    /// Returns the bytes of the last record, with [`Reader::keeping_raw`].
     #[must_use]
     pub fn raw(&self) -> &[u8] {
         &self.raw
@@ -135,13 +135,13 @@ impl<R: Read> Reader<R> {
         self.records.records()
     }
 
-    /// Returns byte offset of the last record (of the next one before the first call of [`Reader::next`]).
+    /// Returns the byte offset of the last record (of the next record before the first call of [`Reader::next`]).
     #[must_use]
     pub fn record_offset(&self) -> u64 {
         self.records.record_offset()
     }
 
-    /// Returns byte offset behind the last record.
+    /// Returns the byte offset after the last record.
     #[must_use]
     pub fn offset(&self) -> u64 {
         self.records.offset()
@@ -153,17 +153,17 @@ impl<R: Read> Reader<R> {
         self.layout
     }
 
-    /// Reads to the end of the stream, in bounded memory, and gives the number of bytes behind the last record read.
+    /// Reads to the end of the stream, in bounded memory, and returns the number of bytes after the last record read.
     ///
     /// # Errors
-    /// An error of the stream, or [`Malformation::Endless`] when more than [`TRAILING_LIMIT`] bytes follow.
+    /// An error of the stream, or [`Malformation::Endless`] if more than [`TRAILING_LIMIT`] bytes follow.
     pub fn trailing(&mut self) -> Result<u64, TraceError> {
         let (offset, record) = (self.offset(), self.records());
         let source = &mut self.records.source;
         match (source.drain(TRAILING_LIMIT), source.error()) {
             (_, Some(what)) => Err(TraceError::new(self.layout, record, source.offset(), what)),
             (None, None) => {
-                // The place is the end of the last record, because there may be no next one.
+                // The place is the end of the last record, because there may be no next record.
                 let what = Malformation::Endless { limit: TRAILING_LIMIT };
                 Err(TraceError::new(self.layout, record.saturating_sub(1), offset, what))
             }
@@ -178,11 +178,11 @@ impl<R: Read> Reader<R> {
             let offset = list + number * List::Impulses.entry_bytes();
             Some(TraceError::new(self.layout, record, offset, self.odd(number, impulse)?))
         });
-        let odd: Vec<_> = odd.take(NOTES).collect();
+        let odd: Vec<_> = odd.take(MAX_NOTES).collect();
         self.notes.extend(odd);
     }
 
-    /// Returns an oddity of an impulse.
+    /// Returns the oddity of an impulse, if it has one.
     fn odd(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {
@@ -212,7 +212,7 @@ mod tests {
     fn a_frame_beyond_the_limit_is_refused_before_it_is_in_memory() {
         let layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
         for list in [[0, i32::MAX, 0], [0, 1, 1 << 28]] {
-            // As many empty polynomials, or coefficients of one, as there are bytes of zeros.
+            // As many empty polynomials, or coefficients of one, as there are zero bytes.
             let head = list.map(i32::to_le_bytes).concat();
             let endless = Read::chain(&head[..], std::io::repeat(0));
             let mut reader = Reader::new(endless, layout);

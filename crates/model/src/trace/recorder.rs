@@ -1,7 +1,7 @@
-//! Recording a simulation: an observer that writes the trace while the simulation steps.
+//! Records a simulation with an observer that writes the trace during the steps.
 //!
-//! It decides only what reaches the trace and when (trace-format.md 2); it computes nothing. After the first eventful
-//! step it allocates nothing any more unless a step logs more than every step before.
+//! The recorder only decides what is written and when (trace-format.md 2); it computes nothing. After the first step
+//! with events it allocates memory only if a step logs more than every previous step.
 use super::{
     layout::Layout,
     log::Log,
@@ -10,7 +10,7 @@ use super::{
 use crate::sim::{Detection, Impulse, Observer, Pass, State, WantedPairs};
 use std::io::{self, Write};
 
-/// Writes a trace: hand it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
+/// Writes a trace. Pass it to [`Simulation::step`](crate::sim::Simulation::step) as the observer of every step, then
 /// call [`Recorder::finish`].
 ///
 /// A step that fails leaves the trace without its end record.
@@ -36,7 +36,7 @@ impl<W: Write> Recorder<W> {
         self.writer.written_so_far()
     }
 
-    /// Returns whether writing has failed: there is no point in stepping on.
+    /// Returns whether writing has failed, so further steps are pointless.
     #[must_use]
     pub fn has_failed(&self) -> bool {
         self.writer.has_failed()
@@ -47,16 +47,16 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// The first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
-        self.writer.hand_on(self.log.polynomials.all());
+        self.writer.write_collected(self.log.polynomials.all());
         self.writer.finish()
     }
 }
 
 impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
-        // Between steps, since the records of one borrow the same list.
+        // Between steps, because the records of one step borrow the same list.
         if self.writer.is_full() {
-            self.writer.hand_on(self.log.polynomials.all());
+            self.writer.write_collected(self.log.polynomials.all());
         }
         if self.writer.has_unwritten() {
             self.log.begin_step_behind();
@@ -110,7 +110,7 @@ mod tests {
         State { positions: vec![x, 0.0], velocities: vec![0.0, 0.0] }
     }
 
-    /// Plays one pass of `stage` that finds one hit.
+    /// Simulates one pass of `stage` that finds one hit.
     fn pass(recorder: &mut Recorder<Vec<u8>>, stage: Stage) {
         let pass = Pass { stage, index: 0 };
         recorder.begin_pass(pass);
@@ -192,7 +192,7 @@ mod tests {
         assert!(expected.len() > 1 << 21, "{}", expected.len());
     }
 
-    /// However long a trace is, and wherever in a step there was enough to be written.
+    /// The trace may have any length, and the buffer may be full anywhere in a step.
     #[test]
     fn memory_does_not_grow_with_the_trace() {
         let mut recorder = Recorder::start(io::sink(), layout(), &state(0.0));

@@ -1,12 +1,11 @@
-//! A stream with a buffer that can be read before it is consumed, and an absolute offset.
+//! A stream with an absolute offset, and with a buffer that can be read before it is consumed.
 //!
-//! An error of the stream counts as its end and is kept, so that a reader treats it like missing bytes and can still
-//! name it.
+//! An error of the stream counts as its end and is kept. A reader treats it like missing bytes and can still name it.
 use super::error::Malformation;
 use std::io::{self, Read};
 
-/// Size of the buffer, hence of the largest piece that [`Source::ensure`] can show in one call. A larger one does not
-/// make reading faster: its pages have to be made, and its bytes do not stay near the processor.
+/// Size of the buffer, and of the largest piece that [`Source::ensure`] can provide in one call. A larger buffer does
+/// not make reading faster, because its pages must be created and it does not fit the cache.
 pub(crate) const WINDOW: usize = 64 * 1024;
 
 #[derive(Debug)]
@@ -15,9 +14,9 @@ pub(crate) struct Source<R> {
     buffer: Vec<u8>,
     start: usize,
     end: usize,
-    /// Absolute offset of `buffer[start]`.
+    /// The absolute offset of `buffer[start]`.
     offset: u64,
-    /// Length of the whole stream, where it is known. Nothing beyond is read.
+    /// The length of the whole stream, if known. Nothing after it is read.
     length: Option<u64>,
     ended: bool,
     error: Option<Malformation>,
@@ -44,7 +43,7 @@ impl<R: Read> Source<R> {
         self.tape = Some(buffer);
     }
 
-    /// Stops keeping and returns the bytes consumed since the start; empty without a start.
+    /// Stops keeping bytes, and returns those consumed since the start; empty without a start.
     pub(crate) fn stop_tape(&mut self) -> Vec<u8> {
         self.tape.take().unwrap_or_default()
     }
@@ -66,10 +65,11 @@ impl<R: Read> Source<R> {
         &self.buffer[self.start..self.end]
     }
 
-    /// Tries to have at least `wanted` bytes in the buffer and gives the number that is there, fewer only at the end.
+    /// Tries to fill the buffer to at least `wanted` bytes, and returns the number present, which is smaller only at
+    /// the end.
     ///
     /// # Panics
-    /// With more than [`WINDOW`] bytes.
+    /// If `wanted` exceeds [`WINDOW`] bytes.
     pub(crate) fn ensure(&mut self, wanted: usize) -> usize {
         assert!(wanted <= WINDOW, "the window is smaller");
         if self.end - self.start < wanted && !self.ended {
@@ -88,8 +88,8 @@ impl<R: Read> Source<R> {
         self.offset += count as u64;
     }
 
-    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Gives how many there were;
-    /// `None` when more follow.
+    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Returns the number of bytes;
+    /// `None` if more follow.
     pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
         let mut drained = 0;
         loop {
@@ -110,8 +110,8 @@ impl<R: Read> Source<R> {
     #[cold]
     fn fill(&mut self, wanted: usize) {
         if self.buffer.is_empty() {
-            // Small traces get a small buffer; one byte more shows the end of the stream in the same call. Memory that
-            // is not used stays untouched.
+            // Small traces get a small buffer; one more byte shows the end of the stream in the same call. Unused
+            // memory is never touched.
             let size = self.length.map_or(WINDOW as u64, |length| length.saturating_add(1).clamp(64, WINDOW as u64));
             self.buffer = vec![0; usize::try_from(size).unwrap_or(WINDOW)];
         }
@@ -146,7 +146,7 @@ impl<R: Read> Source<R> {
 mod tests {
     use super::*;
 
-    /// Gives one byte per call, with an interruption before each.
+    /// Returns one byte per call, with an interruption before each.
     struct Trickle<'a>(&'a [u8], bool);
 
     impl Read for Trickle<'_> {

@@ -1,8 +1,8 @@
-//! A readable summary of a trace, for snapshot tests and for the eye.
+//! A readable summary of a trace, for snapshot tests and for people.
 //!
 //! A pure function of scene and bytes: the same trace gives the same text everywhere. Numbers are printed with the
-//! fewest digits that read back to the same bits. What a trace does not hold (passes, pair kinds, zones) is counted
-//! by [`EventCounts`](super::EventCounts) while a simulation runs.
+//! fewest digits that read back to the same bits. Passes, pair kinds and zones, which a trace does not hold, are
+//! counted by [`EventCounts`](super::EventCounts) while a simulation runs.
 use super::{
     digest::Digests,
     error::TraceError,
@@ -12,8 +12,8 @@ use super::{
 use crate::{scene::Scene, sim::pairs};
 use std::{fmt, io::Read};
 
-/// The greatest number of collisions that are listed.
-const COLLISIONS: usize = 40;
+/// The maximum number of collisions that are listed.
+const MAX_COLLISIONS: usize = 40;
 
 /// The contents of a trace. Its `Display` is the text that a snapshot test keeps.
 ///
@@ -56,29 +56,29 @@ const COLLISIONS: usize = 40;
 pub struct Summary {
     /// The collision type's name in scenes.
     pub collision: &'static str,
-    /// The shape that the scene gives its traces.
+    /// The layout of the scene's traces.
     pub layout: Layout,
-    /// Number of edges of the scene.
+    /// The number of edges of the scene.
     pub edges: usize,
-    /// Number of half-planes of the scene.
+    /// The number of half-planes of the scene.
     pub half_planes: usize,
-    /// Polynomials of one detection pass over all pairs (trace-format.md 2).
+    /// The number of polynomials of one detection pass over all pairs (trace-format.md 2).
     pub polynomials_per_pass: u64,
     /// The trace's bytes, records, damage and digests.
     pub trace: Digests,
-    /// Number of oddities that do not end the reading, and the first.
+    /// The number of oddities that do not stop the reading, and the first oddity.
     pub notes: (u64, Option<TraceError>),
-    /// Number of impulses of all end records.
+    /// The number of impulses of all end records.
     pub impulses: u64,
-    /// Number of polynomials of all end records.
+    /// The number of polynomials of all end records.
     pub polynomials: u64,
-    /// The first collisions: step and impulse.
+    /// The first collisions, each with its step.
     pub collisions: Vec<(u32, LoggedImpulse)>,
 }
 
 impl Summary {
-    /// Summarizes a trace of `scene`, in the memory of one record and eight bytes per step. A malformed trace has a
-    /// summary, too: it names the place where reading ended.
+    /// Summarizes a trace of `scene`, with the memory of one record and eight bytes per step. A malformed trace has a
+    /// summary as well, which names the place where reading stopped.
     pub fn for_scene(scene: &Scene, mut trace: impl Read) -> Self {
         let layout = Layout::for_scene(scene);
         let mut summary = Self {
@@ -94,7 +94,7 @@ impl Summary {
         summary
     }
 
-    /// Takes in a record.
+    /// Adds a record.
     fn record(&mut self, record: u64, frame: &Frame, notes: &[TraceError]) {
         self.notes.0 += notes.len() as u64;
         if self.notes.1.is_none() {
@@ -106,12 +106,12 @@ impl Summary {
         let step = self.layout.step_of(record);
         self.impulses += frame.impulses.len() as u64;
         self.polynomials += frame.polynomials.len() as u64;
-        let room = COLLISIONS - self.collisions.len();
+        let room = MAX_COLLISIONS - self.collisions.len();
         self.collisions.extend(frame.impulses.iter().take(room).map(|impulse| (step, *impulse)));
     }
 }
 
-/// Returns `1 particle`, `2 particles`.
+/// Returns a count with its unit, such as `1 particle` or `2 particles`.
 fn number(count: impl Into<u64>, thing: &str) -> String {
     let count = count.into();
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })

@@ -1,9 +1,8 @@
-//! Frames to bytes.
+//! Writes frames as bytes.
 //!
-//! [`Writer`] gathers records and hands them to any `Write` in large pieces, so the stream below needs no buffer of its
-//! own. What is short it copies into a buffer; a recorder's long lists stay where they are until they are written. It
-//! counts what it wrote, keeps the first I/O error until [`Writer::finish`], and checks nothing: damaged traces for
-//! tests can be written, too.
+//! [`Writer`] collects records and writes them to any `Write` in large pieces, so the stream needs no buffer. Short
+//! data is copied into a buffer; a recorder's long lists are not copied. It counts the bytes and records, and keeps the
+//! first I/O error until [`Writer::finish`]. It checks nothing, so tests can write damaged traces.
 use super::{encode, frame::Frame, layout::Layout, log::Log};
 use crate::sim::State;
 use std::{
@@ -11,21 +10,22 @@ use std::{
     ops::Range,
 };
 
-/// The size in bytes at which gathered bytes are handed on.
+/// The size in bytes at which collected bytes are written.
 const PIECE: usize = 256 * 1024;
 
-/// A list of fewer bytes is copied, since a part of its own would cost the system more than a copy.
+/// The size in bytes from which a list is not copied; for a shorter list, a separate part would cost the system more
+/// than a copy.
 const LONG: usize = 1024;
 
-/// The greatest number of long lists that are gathered.
+/// The maximum number of long lists that are collected.
 const LISTS: usize = 128;
 
-/// The bytes and records written.
+/// The numbers of bytes and records written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct WrittenTrace {
-    /// Records.
+    /// The number of records.
     pub records: u64,
-    /// Bytes.
+    /// The number of bytes.
     pub bytes: u64,
 }
 
@@ -35,9 +35,9 @@ pub struct Writer<W: Write> {
     stream: W,
     layout: Layout,
     buffer: Vec<u8>,
-    /// Long lists that are not in the buffer: their places in it, and their places among the log's polynomials.
+    /// The long lists that are not in the buffer: their positions in it, and their ranges among the log's polynomials.
     lists: Vec<(usize, Range<usize>)>,
-    /// The bytes of the lists.
+    /// The number of bytes of the lists.
     listed: usize,
     written: WrittenTrace,
     error: Option<io::Error>,
@@ -57,7 +57,7 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Writes one frame; lists that the layout has no room for are left out.
+    /// Writes one frame; lists that the layout does not have are left out.
     pub fn write_frame(&mut self, frame: &Frame) {
         encode::append_state(&mut self.buffer, &frame.state);
         if self.layout.impulses {
@@ -72,12 +72,12 @@ impl<W: Write> Writer<W> {
         }
         self.written.records += 1;
         if self.is_full() {
-            self.hand_on(&[]);
+            self.write_collected(&[]);
         }
     }
 
-    /// Writes one record whose lists are encoded already. While it [borrows](Self::borrows) the log keeps its
-    /// polynomials; once it is [full](Self::is_full) it takes two more records, then they must be handed on.
+    /// Writes one record with encoded lists. While the writer [borrows](Self::borrows), the log keeps its polynomials.
+    /// Once it is [full](Self::is_full), it takes two more records, then they must be written.
     pub(super) fn record(&mut self, state: &State, log: &Log) {
         log.write_head(&mut self.buffer, self.layout, state);
         if self.layout.polynomials {
@@ -92,12 +92,12 @@ impl<W: Write> Writer<W> {
         self.written.records += 1;
     }
 
-    /// Returns whether there is enough to be handed on.
+    /// Returns whether enough is collected to be written.
     pub(super) fn is_full(&self) -> bool {
         self.buffer.len() + self.listed >= PIECE || self.lists.len() + 2 > LISTS
     }
 
-    /// Returns whether polynomials of the log are still to be written.
+    /// Returns whether polynomials of the log have not been written.
     pub(super) fn has_unwritten(&self) -> bool {
         !self.lists.is_empty()
     }
@@ -111,7 +111,7 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Returns whether writing has failed; later bytes are dropped then.
+    /// Returns whether writing has failed; later bytes are then dropped.
     #[must_use]
     pub fn has_failed(&self) -> bool {
         self.error.is_some()
@@ -122,7 +122,7 @@ impl<W: Write> Writer<W> {
     /// # Errors
     /// The first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
-        self.hand_on(&[]);
+        self.write_collected(&[]);
         if let Some(error) = self.error {
             return Err(error);
         }
@@ -130,8 +130,8 @@ impl<W: Write> Writer<W> {
         Ok((self.stream, self.written))
     }
 
-    /// Writes the gathered records; the log has these polynomials.
-    pub(super) fn hand_on(&mut self, polynomials: &[u8]) {
+    /// Writes the collected records; `polynomials` are those of the log.
+    pub(super) fn write_collected(&mut self, polynomials: &[u8]) {
         let bytes = (self.buffer.len() + self.listed) as u64;
         if self.error.is_none() && bytes > 0 {
             let mut parts = [IoSlice::new(&[]); 2 * LISTS + 1];
@@ -155,7 +155,7 @@ impl<W: Write> Writer<W> {
 
 /// Writes all parts. (`Write::write_all_vectored` is not stable.)
 fn write_all(stream: &mut impl Write, mut parts: &mut [IoSlice<'_>]) -> io::Result<()> {
-    // Past empty parts.
+    // Skip empty parts.
     IoSlice::advance_slices(&mut parts, 0);
     while !parts.is_empty() {
         match stream.write_vectored(parts) {
@@ -172,7 +172,7 @@ fn write_all(stream: &mut impl Write, mut parts: &mut [IoSlice<'_>]) -> io::Resu
 mod tests {
     use super::*;
 
-    /// A stream with room for this number of bytes.
+    /// A stream with room for a limited number of bytes.
     struct Full(usize);
 
     impl Write for Full {
@@ -207,7 +207,7 @@ mod tests {
         assert_eq!(bytes[24..32], 4.0_f64.to_le_bytes());
     }
 
-    /// Takes a few bytes of whatever it is given at a time.
+    /// A stream that accepts only a few bytes at a time.
     struct Slow(Vec<u8>);
 
     impl Write for Slow {

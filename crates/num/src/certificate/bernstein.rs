@@ -1,19 +1,19 @@
 //! Certificates for polynomials of degree three to five that the root finder finds nowhere positive in `[0, 1]`.
 //!
-//! On an interval a polynomial lies between the least and the greatest of its Bernstein coefficients (for instance
-//! Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012). All of them negative with
-//! margin, the zeros near (a bound after Fujiwara, 1916) and apart, has been enough for the root finder; the header of
-//! [`super`] says what is only measured.
+//! On an interval a polynomial lies between its smallest and its largest Bernstein coefficient (for instance Farouki,
+//! *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012). If all of them are negative with a
+//! margin, and the zeros are near (a bound after Fujiwara, 1916) and separated, the root finder has always agreed; the
+//! header of [`super`] lists what is only measured.
 use super::{
     super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR},
-    separated::zeros_are_separated,
+    separated_zeros::zeros_are_separated,
 };
 
 /// Returns whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.
 #[inline]
 pub(super) fn never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {
-        // The value at 0 is the cheapest test; it fails for most that are positive somewhere.
+        // The value at 0 is the cheapest test; it is positive for most polynomials that are positive anywhere.
         [.., last] if last >= 0.0 => false,
         [a, b, c, d] => negative(&[a, b, c, d], &[1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
         [a, b, c, d, e] => negative(&[a, b, c, d, e], &[1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
@@ -22,8 +22,8 @@ pub(super) fn never_positive(coefficients: &[f64]) -> bool {
     }
 }
 
-/// Returns whether all Bernstein coefficients are negative with margin, and the zeros near and apart. From
-/// coefficients, highest power first, and the reciprocals of the binomial coefficients.
+/// Returns whether all Bernstein coefficients are negative with a margin, and the zeros are near and separated. The
+/// inputs are the coefficients, highest power first, and the reciprocals of the binomial coefficients.
 #[inline(always)]
 fn negative<const LENGTH: usize>(coefficients: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
     let mut near = coefficients[0].abs();

@@ -1,19 +1,19 @@
-//! Constants, lines and parabolas: when the root finder certainly finds them nowhere positive in `[0, 1]`.
+//! Certificates for constants, lines and parabolas that the root finder finds nowhere positive in `[0, 1]`.
 //!
-//! Below, u is 2^-53 and every claim is about the *computed* positive set.
+//! In the comments, u is 2^-53 and every claim is about the *computed* positive set.
 use super::{
     super::{
         polynomial::evaluate,
         tolerances::{
-            LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_LARGEST, PARABOLA_MARGIN, PARABOLA_NEAR, PARABOLA_ROOM,
-            PARABOLA_SMALLEST, SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+            LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_MAX, PARABOLA_MIN, PARABOLA_NEAR, PARABOLA_ROOM,
+            SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
         },
     },
     Level,
 };
 
-/// Returns whether a polynomial of degree at most two (as it is solved, small leading coefficients dropped) is
-/// certainly not positive within the step. NaN and infinities never give a wrong `Some`.
+/// Returns whether a polynomial of degree at most two (as solved, small leading coefficients dropped) is certainly not
+/// positive within the step. NaN and infinities never give a wrong `Some`.
 #[inline]
 pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
     let (level, excluded) = match *coefficients {
@@ -28,7 +28,7 @@ pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
     excluded.then_some(level)
 }
 
-/// Returns whether the line `a t + b` is excluded, neither zero.
+/// Returns whether the line `a t + b` is excluded; neither may be zero.
 #[inline]
 fn line(a: f64, b: f64) -> bool {
     if a < 0.0 {
@@ -36,8 +36,8 @@ fn line(a: f64, b: f64) -> bool {
         if b > 0.0 {
             return false;
         }
-        // The zero z = -b/a is negative; the sample at z + 1 has the value a, rounded with an error of at most
-        // 4u|b|, far less than |a|.
+        // The zero z = -b/a is negative. The sample at z + 1 has the value a, with a rounding error of at most 4u|b|,
+        // far less than |a|.
         if b >= a * LINE_NEAR {
             return true;
         }
@@ -45,7 +45,7 @@ fn line(a: f64, b: f64) -> bool {
     exact_line(a, b)
 }
 
-/// Runs the root finder's own operations: one zero and the samples on its two sides.
+/// Performs the root finder's operations: one zero and the samples on its two sides.
 fn exact_line(a: f64, b: f64) -> bool {
     let zero = -b / a;
     let before = evaluate(&[a, b], zero - 1.0) > 0.0;
@@ -54,16 +54,16 @@ fn exact_line(a: f64, b: f64) -> bool {
     !meets && !zero.is_nan()
 }
 
-/// Returns whether the parabola `a t^2 + b t + c` is excluded, `a` not zero and not both others.
+/// Returns whether the parabola `a t² + b t + c` is excluded; `a` is not zero, and `b` and `c` are not both zero.
 #[inline]
 fn parabola(a: f64, b: f64, c: f64) -> bool {
     c < 0.0 && (misses(a, b, c) || negative(a, b, c))
 }
 
-/// Returns whether it has no real zero, clearly: then the only sample is the one at 0, which is c.
+/// Returns whether the parabola clearly has no real zero. The only sample is then the one at 0, which is c.
 ///
-/// The discriminant's relative distance from 0 is 2^-20, its rounding a few u. The imaginary part is at least
-/// 2^-10 sqrt(c/a), hence above the 1e-8 below which a zero counts as real.
+/// The relative distance of the discriminant from 0 is 2^-20, and its rounding error is a few u. The imaginary part is
+/// at least 2^-10 sqrt(c/a), and exceeds the 1e-8 below which a zero counts as real.
 #[inline]
 fn misses(a: f64, b: f64, c: f64) -> bool {
     let product = 4.0 * a * c;
@@ -71,15 +71,15 @@ fn misses(a: f64, b: f64, c: f64) -> bool {
     a < 0.0
         && b * b < product * PARABOLA_COMPLEX
         && c <= a * PARABOLA_ROOM
-        && (PARABOLA_SMALLEST..PARABOLA_LARGEST).contains(&product)
-        && (SEARCH_SMALLEST_COEFFICIENT..SEARCH_LARGEST_COEFFICIENT).contains(&-a)
+        && (PARABOLA_MIN..PARABOLA_MAX).contains(&product)
+        && (SEARCH_MIN_COEFFICIENT..SEARCH_MAX_COEFFICIENT).contains(&-a)
 }
 
-/// Returns whether it is below zero on `[0, 1]` with margin, and its zeros are near.
+/// Returns whether the parabola is below zero on `[0, 1]` with a margin, and its zeros are near.
 ///
 /// The computed zeros are those of a parabola whose coefficients differ by a few u times the sum of the moduli, far
-/// less than the margin, so none is in `[0, 1]`. They are of modulus at most r = 2^23, so a value is rounded by at most
-/// 8 u r^2 |a| = 2^-4 |a|, while the samples beyond the outermost zeros have a modulus of at least |a|, and the one
+/// less than the margin, so none is in `[0, 1]`. Their modulus is at most r = 2^23, so the rounding error of a value is
+/// at most 8 u r^2 |a| = 2^-4 |a|. The samples beyond the outermost zeros have a modulus of at least |a|, and the one
 /// between two zeros on either side of `[0, 1]` at least |a|/4.
 #[inline]
 fn negative(a: f64, b: f64, c: f64) -> bool {
@@ -90,5 +90,5 @@ fn negative(a: f64, b: f64, c: f64) -> bool {
         && (a + b) + c < below
         && b.abs() <= a.abs() * PARABOLA_NEAR
         && c.abs() <= a.abs() * (PARABOLA_NEAR * PARABOLA_NEAR)
-        && (PARABOLA_SMALLEST..PARABOLA_LARGEST).contains(&size)
+        && (PARABOLA_MIN..PARABOLA_MAX).contains(&size)
 }

@@ -1,17 +1,17 @@
-//! The certificate's closed forms for several polynomials together: the questions of `closed_form`, in the same order
-//! of operations, about polynomials that still have their small leading coefficients.
+//! The certificate's closed forms for several polynomials together: the tests of `closed_form`, in the same order of
+//! operations, for polynomials that still have their small leading coefficients.
 //!
 //! The answers equal those for each polynomial alone if all numbers are finite. Lanes in which a question does not
 //! arise compute unused values.
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
-        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_LARGEST, PARABOLA_MARGIN, PARABOLA_NEAR,
-        PARABOLA_ROOM, PARABOLA_SMALLEST, SEARCH_LARGEST_COEFFICIENT, SEARCH_SMALLEST_COEFFICIENT,
+        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_MAX, PARABOLA_MIN, PARABOLA_NEAR,
+        PARABOLA_ROOM, SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
     },
 };
 
-/// Returns the lanes in which a coefficient is so small that it is dropped when it leads.
+/// Returns the lanes in which a coefficient is small enough to be dropped when it leads.
 #[inline(always)]
 pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     coefficient.abs().below(LEADING_COEFFICIENT)
@@ -22,7 +22,7 @@ pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
 #[inline(always)]
 pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (zero, small) = (a.like(0.0), is_small(a));
-    // Without the leading one the rest is empty, or a constant that is not positive.
+    // Without the leading coefficient the polynomial is empty, or a constant that is not positive.
     let constant = small & b.below(LEADING_COEFFICIENT);
     let near = a.lt(zero) & b.le(zero) & (LINE_NEAR * a).le(b);
     let known = constant | (!small & (b.is_zero() | near));
@@ -32,7 +32,7 @@ pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     if open.any() { known | (open & exact_line(a, b)) } else { known }
 }
 
-/// Returns the root finder's own operations: one zero and the samples on its two sides.
+/// Performs the root finder's operations: one zero and the samples on its two sides.
 #[inline(always)]
 fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (nothing, one) = (a.like(0.0), a.like(1.0));
@@ -42,7 +42,7 @@ fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     !((before & nothing.lt(zero)) | (after & zero.le(one)))
 }
 
-/// Returns the lanes in which the polynomial `a t^2 + b t + c`, with small leading coefficients dropped, is certainly
+/// Returns the lanes in which the polynomial `a t² + b t + c`, with small leading coefficients dropped, is certainly
 /// not positive within the step.
 #[inline(always)]
 pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
@@ -52,15 +52,16 @@ pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S>
     if small.any() { whole | (small & never_positive_line(b, c)) } else { whole }
 }
 
-/// Returns the parabola with a leading coefficient that counts: it has no real zero, or is below zero with margin.
+/// Tests parabolas whose leading coefficient is not dropped: whether they have no real zero, or are below zero with a
+/// margin.
 #[inline(always)]
 fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let product = 4.0 * a * c;
     let misses = a.below(0.0)
         & (b * b).lt(PARABOLA_COMPLEX * product)
         & c.le(PARABOLA_ROOM * a)
-        & within(product, PARABOLA_SMALLEST, PARABOLA_LARGEST)
-        & within(-a, SEARCH_SMALLEST_COEFFICIENT, SEARCH_LARGEST_COEFFICIENT);
+        & within(product, PARABOLA_MIN, PARABOLA_MAX)
+        & within(-a, SEARCH_MIN_COEFFICIENT, SEARCH_MAX_COEFFICIENT);
     let size = a.abs() + b.abs() + c.abs();
     let below = -PARABOLA_MARGIN * size;
     let negative = c.lt(below)
@@ -68,7 +69,7 @@ fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
         & ((a + b) + c).lt(below)
         & b.abs().le(PARABOLA_NEAR * a.abs())
         & c.abs().le((PARABOLA_NEAR * PARABOLA_NEAR) * a.abs())
-        & within(size, PARABOLA_SMALLEST, PARABOLA_LARGEST);
+        & within(size, PARABOLA_MIN, PARABOLA_MAX);
     c.below(0.0) & (misses | negative)
 }
 
@@ -78,16 +79,16 @@ fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
     value.at_least(low) & value.below(high)
 }
 
-/// Returns the lanes in which an impact is excluded for a pair of particles, or with a half-plane: one of its
-/// polynomials, a parabola and a line, is certainly not positive within the step.
+/// Returns the lanes in which an impact is excluded for a particle-particle or particle-half-plane pair, because one of
+/// its polynomials (a parabola and a line) is certainly not positive within the step.
 #[inline(always)]
 pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
     never_positive(a, b, c) | never_positive_line(d, e)
 }
 
 /// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
-/// certainly not positive within the step, and the search among all of them would end, which `ends` states for the
-/// first and the last.
+/// certainly not positive within the step, and the search among all of them would end. `ends` states that for the first
+/// and the last.
 #[inline(always)]
 pub fn excludes_edge<S: Simd>(
     ends: Mask<S>,
@@ -102,7 +103,7 @@ pub fn excludes_edge<S: Simd>(
     let [a0, a1, a2, a3, a4, a5] = approach;
     let mut excluded = never_positive(f0, f1, f2) | never_positive(s0, s1, s2);
     if !excluded.all() {
-        // If the overlap has degree two at most, or the approach, the closed forms cover them, too.
+        // If the overlap or the approach has degree two at most, the closed forms cover it as well.
         let is_parabola = is_small(o0) & is_small(o1);
         if is_parabola.any() {
             excluded = excluded | (is_parabola & never_positive(o2, o3, o4));
@@ -115,7 +116,7 @@ pub fn excludes_edge<S: Simd>(
     excluded & ends
 }
 
-/// Returns the lanes in which all coefficients are of a size with which a search is known to end.
+/// Returns the lanes in which all coefficients have a size for which a search is known to end.
 #[inline(always)]
 pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {
     let mut all = ends(coefficients[0]);
@@ -128,8 +129,8 @@ pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGT
 #[inline(always)]
 fn ends<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     let modulus = coefficient.abs();
-    let largest = modulus.like(SEARCH_LARGEST_COEFFICIENT);
-    modulus.is_zero() | (modulus.at_least(SEARCH_SMALLEST_COEFFICIENT) & modulus.le(largest))
+    let largest = modulus.like(SEARCH_MAX_COEFFICIENT);
+    modulus.is_zero() | (modulus.at_least(SEARCH_MIN_COEFFICIENT) & modulus.le(largest))
 }
 
 #[cfg(test)]
@@ -137,23 +138,23 @@ mod tests {
     use super::*;
     use crate::{
         certificate::closed_form,
-        lanes::{Instructions, MOST_LANES, Work},
+        lanes::{Instructions, MAX_LANES, Work},
         polynomial::trim,
     };
     use proptest::prelude::*;
 
-    struct Ask<'a>(&'a [[f64; MOST_LANES]; 3]);
+    struct Ask<'a>(&'a [[f64; MAX_LANES]; 3]);
 
     impl Work for Ask<'_> {
-        type Output = [[f64; MOST_LANES]; 3];
+        type Output = [[f64; MAX_LANES]; 3];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
-            let mut answers = [[0.0; MOST_LANES]; 3];
-            for first in (0..MOST_LANES).step_by(Lanes::<S>::COUNT) {
+            let mut answers = [[0.0; MAX_LANES]; 3];
+            for first in (0..MAX_LANES).step_by(Lanes::<S>::COUNT) {
                 let [a, b, c] = self.0.map(|numbers| Lanes::load(simd, &numbers[first..]));
                 let masks = [never_positive(a, b, c), never_positive_line(b, c), search_ends(&[a, b, c])];
                 for (answer, mask) in answers.iter_mut().zip(masks) {
-                    let mut lanes = [0.0; MOST_LANES];
+                    let mut lanes = [0.0; MAX_LANES];
                     mask.or_zero(1.0).store(&mut lanes);
                     answer[first..first + Lanes::<S>::COUNT].copy_from_slice(&lanes[..Lanes::<S>::COUNT]);
                 }
@@ -162,7 +163,7 @@ mod tests {
         }
     }
 
-    /// Returns numbers of all sizes that formulas make, with zeros and bounds of the certificate among them.
+    /// Returns numbers of all sizes that occur in formulas, including zeros and bounds of the certificate.
     fn coefficient() -> impl Strategy<Value = f64> {
         let exponents = prop_oneof![-7..7_i32, -53..53_i32, -530..465_i32];
         let power = |exponent: i32| f64::from_bits(u64::try_from(1023 + exponent).expect("not negative") << 52);
@@ -181,7 +182,7 @@ mod tests {
         fn lanes_say_what_single_polynomials_say(lists in prop::array::uniform3(prop::array::uniform8(coefficient()))) {
             for instructions in [Instructions::default(), Instructions::plain()] {
                 let answers = instructions.run(Ask(&lists));
-                for lane in 0..MOST_LANES {
+                for lane in 0..MAX_LANES {
                     let [a, b, c] = lists.map(|numbers| numbers[lane]);
                     let expected = [
                         closed_form::never_positive(trim(&[a, b, c])).is_some(),

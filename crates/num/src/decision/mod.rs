@@ -1,10 +1,10 @@
-//! Certified decisions: does a detection hit within the step, whatever rounding did to its polynomials?
+//! Certified decisions: whether a detection hits within the step, whatever rounding did to its polynomials.
 //!
-//! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16): they need not be
-//! positive in one open interval, it is enough that the *closures* of the sets where each is positive meet in `(0, 1]`.
-//! Each coefficient is known up to an error; [`decide`] finds whether the answer is the same for all choices of
-//! coefficients, and proves it. It does not depend on the result of the original's root finder (that is
-//! [`first_time`](super::first_time), and [`certificate`](super::certificate) for skipping it).
+//! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16). It is enough that the
+//! *closures* of their positive sets meet in `(0, 1]`; a common open interval is not necessary. Each coefficient is
+//! known up to an error; [`decide`] finds whether the result is the same for all choices of coefficients, and proves
+//! it. It does not depend on the result of the original's root finder (that is [`first_time`](super::first_time), and
+//! [`certificate`](super::certificate) for skipping it).
 //!
 //! The mathematics is short. For `t >= 0` a polynomial grows with each of its coefficients, so among all choices the
 //! one with the greatest coefficients ("upper") is positive where any is, and the one with the least ("lower") only
@@ -12,24 +12,24 @@
 //!
 //! * **Yes** exactly if `tau(lower) <= 1`, with `[tau(upper), tau(lower)]` as enclosure of the time;
 //! * **No** exactly if `tau(upper) > 1`;
-//! * **Borderline** otherwise: some choices hit, others do not. (Also where a proof would take too long; see
+//! * **Borderline** otherwise: some choices hit, others do not. (Also if a proof would take too long; see
 //!   [`decide`].)
 //!
-//! Two lists without errors are left to decide. `range` rejects them by signs and by Bernstein coefficients, `pieces`
+//! It remains to decide two lists without errors. `range` rejects them by signs and by Bernstein coefficients, `pieces`
 //! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section
-//! 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and what is left goes to
-//! integer arithmetic ([`exact`]), which always decides.
+//! 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and the rest is decided
+//! by integer arithmetic ([`exact`]), which always has a result.
 //!
-//! The rules (and where they differ from the original): zeros at which a polynomial only touches zero from above do
-//! not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11); a time of
-//! exactly 1 counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and one that vanishes
-//! are nowhere positive (17.2). Coefficients are taken as they are: small leading ones are not dropped, and `c t^m` is
-//! positive after 0 if `c` is, while the original takes it as nowhere positive (17.1). Code that compares with the
-//! original has to know these two.
+//! The rules, and their differences from the original, are as follows. Zeros at which a polynomial only touches zero
+//! from above do not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11);
+//! a time of exactly 1 counts, sets that end at exactly 0 do not (16.2); an empty list, an empty polynomial and a zero
+//! polynomial are nowhere positive (17.2). Coefficients are used unchanged: small leading ones are not dropped, and `c
+//! t^m` is positive after 0 if `c` is, while the original treats it as nowhere positive (17.1). Code that compares with
+//! the original must allow for both differences.
 pub mod exact;
 pub(crate) mod pieces;
 pub(crate) mod range;
-mod short;
+mod short_numbers;
 
 #[cfg(test)]
 mod tests;
@@ -41,33 +41,32 @@ use super::{
 use exact::{ExactAnswer, exact_first};
 use pieces::{Answer, Search};
 use range::{Ends, Problem};
-pub use short::all_exact;
+pub use short_numbers::all_exact;
 
-/// The greatest number of polynomials of one detection.
+/// The maximum number of polynomials of one detection.
 pub const MAX_POLYNOMIALS: usize = 4;
 
-/// The greatest margin that is reported, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about
-/// 1.
+/// The largest reported margin, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
 pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
 
-/// The powers of two over which coefficients may spread for [`decide`] to use integers although there are errors:
-/// enough for the fifth powers of displacements of `1e-20` next to distances of 1. A greater number makes hostile input
-/// slower.
-const MOST_SPREAD: u64 = 400;
+/// The maximum number of powers of two over which coefficients may spread for [`decide`] to use integers if there are
+/// errors. It is enough for the fifth powers of displacements of `1e-20` next to distances of 1. A larger number makes
+/// hostile input slower.
+const MAX_SPREAD: u64 = 400;
 
 /// Whether the detection hits within the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Certainty {
-    /// For every choice of coefficients within their bounds `tau <= 1`.
+    /// `tau <= 1` for every choice of coefficients within their bounds.
     Yes,
-    /// For every choice `tau > 1`.
+    /// `tau > 1` for every choice.
     No,
-    /// Some choices hit, others do not; or it could not be shown, see [`decide`].
+    /// Some choices hit, others do not; or nothing could be proved, see [`decide`].
     Borderline,
 }
 
 crate::closed_set! {
-    /// The level that decided, cheapest first.
+    /// The level that has decided, cheapest first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Level {
         /// Signs of the coefficients, or the interval sum of their terms (L0).
@@ -86,29 +85,29 @@ crate::closed_set! {
 pub struct CertifiedDecision {
     /// The decision.
     pub certainty: Certainty,
-    /// For `Yes`: encloses `tau` for every choice of coefficients, a fraction of the step in `[0, 1]`. About as wide as
-    /// the errors of the coefficients move it; wider if the polynomials nearly touch earlier in the step. For
-    /// `Borderline`: encloses the least `tau` of any choice (if it is at most 1, where that could not be shown); `None`
-    /// if a coefficient is not finite. `None` for `No`.
+    /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. For `Yes`, it holds for every choice of coefficients;
+    /// it is about as wide as the effect of the coefficients' errors, or wider if the polynomials nearly touch earlier
+    /// in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at most 1), or is
+    /// `None` if a coefficient is not finite. `None` for `No`.
     pub time: Option<[f64; 2]>,
-    /// The decision is proved to survive errors of at least this many units `u` of the coefficients' bounds, at least
-    /// the given `units` and at most [`MARGIN_CAP`]; the true number may be greater. 0 for `Borderline`.
+    /// The number of units `u` of the coefficients' bounds for which the decision is proved to survive errors, at least
+    /// the given `units` and at most [`MARGIN_CAP`]. The true number may be larger. 0 for `Borderline`.
     pub margin: f64,
-    /// Which level was needed.
+    /// The level that was needed.
     pub level: Level,
 }
 
-/// Decides whether all polynomials of a detection become positive within the step: is `tau <= 1` for every choice of
-/// coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's
-/// header)?
+/// Decides whether all polynomials of a detection become positive within the step: whether `tau <= 1` for every choice
+/// of coefficients within `units` times [`UNIT_ROUNDOFF`] times their bounds, for none, or for some (see the module's
+/// header).
 ///
-/// Coefficients come highest power first and untrimmed. With `units` 0 (or bounds that are all 0) the answer is that of
-/// [`exact_first`] and never `Borderline`; a coefficient that is not finite makes every answer `Borderline`. So does,
-/// if there are errors, a polynomial whose coefficients' sizes spread over more than 400 powers of two and which is so
-/// close to the limit that only integers could decide: they might take a tenth of a second.
+/// Coefficients must be in the order highest power first, untrimmed. With `units` 0 (or bounds that are all 0) the
+/// result is that of [`exact_first`] and never `Borderline`. A coefficient that is not finite always gives
+/// `Borderline`. With errors, so does a polynomial whose coefficients' sizes spread over more than 400 powers of two
+/// and which is so close to the limit that only integers could decide, because they might take a tenth of a second.
 ///
 /// # Panics
-/// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one.
+/// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one of them.
 #[must_use]
 pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision {
     let upper = Problem::new(polynomials, units, Ends::Upper);
@@ -136,7 +135,7 @@ pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision 
     match (outer.answer, inner.answer) {
         (_, Answer::Reached(time)) => yes([from, time], units + lower.slack_of_yes(time), Level::Subdivision),
         (Answer::Reached(first), Answer::Never) => borderline(Some([from, first]), Level::Subdivision),
-        (outer, _) if upper.spread().max(lower.spread()) > MOST_SPREAD => {
+        (outer, _) if upper.spread().max(lower.spread()) > MAX_SPREAD => {
             let to = if let Answer::Reached(first) = outer { first } else { 1.0 };
             borderline(Some([from, to]), Level::Subdivision)
         }
@@ -144,7 +143,7 @@ pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision 
     }
 }
 
-/// Returns the decision when all coefficients are exact.
+/// Returns the decision if all coefficients are exact.
 fn without_errors(problem: &Problem, search: &Search, units: f64) -> CertifiedDecision {
     match search.answer {
         Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(time), Level::Subdivision),
@@ -156,7 +155,7 @@ fn without_errors(problem: &Problem, search: &Search, units: f64) -> CertifiedDe
     }
 }
 
-/// Returns the decision by exact arithmetic; `upper_hits` and `lower_misses` are the answers that are known already.
+/// Returns the decision by exact arithmetic; `upper_hits` and `lower_misses` are the known results.
 fn by_integers(
     upper: &Problem,
     lower: &Problem,
@@ -174,7 +173,7 @@ fn by_integers(
     borderline(Some(first), Level::Exact)
 }
 
-/// Decides as [`exact_first`] does, by a problem's coefficients.
+/// Decides like [`exact_first`], for a problem's coefficients.
 fn exact(problem: &Problem) -> ExactAnswer {
     let lists = problem.highest_first();
     let mut slices = [&[] as &[f64]; MAX_POLYNOMIALS];

@@ -1,32 +1,32 @@
 //! Subdivision of `[0, 1]`: L2 of [`super::decide`].
 //!
 //! Pieces are visited from left to right and halved by de Casteljau's algorithm. On a piece a polynomial lies between
-//! the least and the greatest of its Bernstein coefficients; each list carries a bound on its rounding, which grows
-//! with every halving. A piece is closed when one polynomial is negative throughout; a time at which all are positive
-//! ends the search. Halving stops if the coefficients are no more than their own rounding: such pieces stay open. Where
-//! one polynomial is left and its coefficients change their sign once, it has exactly one zero there, which bisection
-//! by values brackets faster.
+//! its smallest and its largest Bernstein coefficient; each list has a bound on its rounding, which grows with every
+//! halving. A piece is closed when one polynomial is negative throughout; a time at which all are positive ends the
+//! search. Halving stops if the coefficients are not larger than their rounding; the piece then stays open. If one
+//! polynomial is left and its coefficients change their sign once, it has exactly one zero in the piece, which
+//! bisection by values brackets faster.
 use super::{
     MAX_POLYNOMIALS, UNIT_ROUNDOFF,
     range::{Control, Problem, slack},
 };
 
-/// After this many halvings a piece stays open.
-const DEEPEST: u32 = 150;
+/// The number of halvings after which a piece stays open.
+const MAX_DEPTH: u32 = 150;
 
-/// A piece that is narrower than this share of its end stays open; all ends are exact until then.
-const NARROWEST: f64 = 1.0 / (1_u64 << 50) as f64;
+/// The width, as a share of its end, below which a piece stays open; all ends are exact until then.
+const MIN_WIDTH: f64 = 1.0 / (1_u64 << 50) as f64;
 
-/// After this many pieces all others stay open. Ordinary searches need some hundred.
-const MOST_PIECES: u32 = 5_000;
+/// The number of pieces after which all others stay open. Ordinary searches need a few hundred.
+const MAX_PIECES: u32 = 5_000;
 
-/// The multiple of its rounding below which a coefficient is noise: halving shows no more.
+/// The multiple of its rounding below which a coefficient is noise, so that halving shows no more.
 const NOISE: f64 = 2.0;
 
 /// The result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
-    /// At this time all polynomials are positive, so `tau` is at most this.
+    /// All polynomials are positive at this time, so `tau` is at most this.
     Reached(f64),
     /// At every time in `[0, 1]` a polynomial is negative.
     Never,
@@ -34,14 +34,14 @@ pub(crate) enum Answer {
     Unknown,
 }
 
-/// An answer with its values.
+/// A result with its values.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Search {
-    /// The answer.
+    /// The result of the search.
     pub(crate) answer: Answer,
-    /// Before this time a polynomial is always negative.
+    /// The time before which a polynomial is always negative.
     pub(crate) from: f64,
-    /// For [`Answer::Never`]: how many units of the bounds it survives at least.
+    /// For [`Answer::Never`], the number of units of the bounds that the result survives at least.
     pub(crate) slack: f64,
 }
 
@@ -61,7 +61,7 @@ pub(crate) fn search(problem: &Problem) -> Search {
     Search { answer, from: walk.first_open.or(reached).unwrap_or(1.0), slack: walk.slack }
 }
 
-/// The polynomials whose sign on a piece is not known yet; all others are positive there.
+/// The polynomials whose sign on a piece is unknown; all others are positive on it.
 #[derive(Clone, Copy)]
 struct Controls {
     list: [Control; MAX_POLYNOMIALS],
@@ -83,12 +83,12 @@ impl Controls {
         &self.list[..self.count]
     }
 
-    /// Returns whether all are positive at the left end.
+    /// Returns whether all polynomials are positive at the left end.
     fn begin_positive(&self) -> bool {
         self.as_slice().iter().all(|control| control.values[0] > control.error)
     }
 
-    /// Returns whether all are positive at the right end.
+    /// Returns whether all polynomials are positive at the right end.
     fn end_positive(&self) -> bool {
         self.as_slice().iter().all(|control| control.values[control.length - 1] > control.error)
     }
@@ -103,7 +103,7 @@ struct PieceWalk<'a> {
 }
 
 impl PieceWalk<'_> {
-    /// Visits the piece from `lo` to `hi`; `Some` with the first time at which all were seen to be positive.
+    /// Visits the piece from `lo` to `hi`. Returns the first time at which all were found to be positive, if any.
     fn visit(&mut self, lo: f64, hi: f64, controls: &Controls, depth: u32) -> Option<f64> {
         self.pieces += 1;
         let mut open = Controls::new();
@@ -122,11 +122,11 @@ impl PieceWalk<'_> {
                 Sign::Noise => open.push(*control),
             }
         }
-        // Without open polynomials this holds, too: all are positive on the whole piece.
+        // Without open polynomials this holds as well: all are positive on the whole piece.
         if open.begin_positive() {
             return Some(lo);
         }
-        let is_last = depth == DEEPEST || hi - lo < NARROWEST * hi || self.pieces >= MOST_PIECES;
+        let is_last = depth == MAX_DEPTH || hi - lo < MIN_WIDTH * hi || self.pieces >= MAX_PIECES;
         if !improves || is_last {
             self.first_open.get_or_insert(lo);
             return open.end_positive().then_some(hi);
@@ -141,7 +141,7 @@ impl PieceWalk<'_> {
         for control in open.as_slice() {
             let (mut first, second) = halves(control);
             if lo == 0.0 {
-                // Near 0 small coefficients decide, which large ones have drowned: convert anew.
+                // Near 0 small coefficients decide, which large ones have swamped, so they are converted again.
                 let fresh = self.problem.polynomials()[control.index].control_until(middle);
                 first = Control { index: control.index, ..fresh };
             }
@@ -151,14 +151,14 @@ impl PieceWalk<'_> {
         self.visit(lo, middle, &left, depth + 1).or_else(|| self.visit(middle, hi, &right, depth + 1))
     }
 
-    /// Brackets the only zero of a polynomial that rises through it between two times, all others being positive there:
-    /// notes the time before as the start of an open piece and gives the time after.
+    /// Brackets the only zero of a polynomial that rises through it between two times, where all others are positive.
+    /// Notes the time before as the start of an open piece, and returns the time after.
     fn bracket(&mut self, control: &Control, mut lo: f64, mut hi: f64) -> f64 {
         let polynomial = &self.problem.polynomials()[control.index];
         loop {
             let middle = lo + (hi - lo) * 0.5;
             let (value, error) = polynomial.value_at(middle);
-            // The middle of neighbors equals one of them, and ends the loop, too.
+            // The midpoint of neighbors equals one of them, which also ends the loop.
             if value > error && middle < hi {
                 hi = middle;
             } else if value < -error && middle > lo {
@@ -172,8 +172,9 @@ impl PieceWalk<'_> {
     }
 }
 
-/// Returns whether the Bernstein coefficients are negative up to some place and positive from the next one on, or the
-/// next but one: whatever the sign between, it changes once, so the polynomial does (Descartes' rule of signs).
+/// Returns whether the Bernstein coefficients are negative up to an index and positive from the next one, or the next
+/// but one. Whatever the sign between them, it changes once, so the polynomial has one change as well (Descartes' rule
+/// of signs).
 fn rises_once(control: &Control) -> bool {
     let values = &control.values[..control.length];
     let negative = values.iter().take_while(|&&value| value < -control.error).count();
@@ -181,15 +182,15 @@ fn rises_once(control: &Control) -> bool {
     negative > 0 && positive > 0 && negative + positive + 1 >= values.len()
 }
 
-/// The sign of a piece, as its Bernstein coefficients show it.
+/// The sign of a polynomial on a piece, as far as its Bernstein coefficients show it.
 enum Sign {
-    /// All coefficients are negative, by at least this much.
+    /// All coefficients are negative, by at least this amount.
     Negative(f64),
     /// All coefficients are positive.
     Positive,
-    /// No coefficient is clearly more than rounding.
+    /// No coefficient is clearly larger than rounding.
     Noise,
-    /// The signs are mixed; halving helps.
+    /// The signs are mixed, so halving helps.
     Mixed,
 }
 
@@ -213,8 +214,8 @@ impl Sign {
     }
 }
 
-/// Returns the Bernstein coefficients of the two halves (de Casteljau). A sum is rounded, halving is exact except for
-/// underflow, which the error already covers; all intermediate values are convex combinations of the first ones.
+/// Returns the Bernstein coefficients of the two halves (de Casteljau). A sum is rounded; halving is exact except for
+/// underflow, which the error already covers. All intermediate values are convex combinations of the first ones.
 fn halves(control: &Control) -> (Control, Control) {
     let (mut left, mut right) = (*control, *control);
     let length = control.length;
@@ -225,7 +226,7 @@ fn halves(control: &Control) -> (Control, Control) {
         }
         left.values[step] = right.values[0];
     }
-    // One more than there are steps covers the rounding of the bound itself.
+    // One more than the number of steps covers the rounding of the bound itself.
     left.error += length as f64 * UNIT_ROUNDOFF * (size + control.error);
     right.error = left.error;
     (left, right)

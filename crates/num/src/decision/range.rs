@@ -1,52 +1,52 @@
-//! The two extreme choices of a detection's coefficients, and the decisions that their signs and Bernstein coefficients
-//! exclude.
+//! The two extreme choices of a detection's coefficients, and the results that follow from their signs and Bernstein
+//! coefficients.
 //!
-//! Levels L0 and L1 of [`super::decide`]: they check one polynomial at a time. Every comparison allows for the rounding
-//! of the computation itself, so its result is proved (rounding as in Higham, *Accuracy and Stability of Numerical
+//! Levels L0 and L1 of [`super::decide`] check one polynomial at a time. Every comparison allows for the rounding of
+//! the computation itself, so its result is proved (rounding as in Higham, *Accuracy and Stability of Numerical
 //! Algorithms*, section 3.1).
 use super::{BoundedValue, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOFF};
 
-/// Which end of every coefficient's interval.
+/// The end of every coefficient's interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Ends {
-    /// The greatest values.
+    /// The largest values.
     Upper,
-    /// The least values.
+    /// The smallest values.
     Lower,
 }
 
-/// More than all that underflow can take from a sum or a convex combination of six numbers, fifty times in a row.
+/// More than the total effect of underflow on a sum or a convex combination of six numbers, fifty times in a row.
 const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 
-/// A bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients.
+/// The bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients.
 const CONVERSION: f64 = 16.0 * UNIT_ROUNDOFF;
 
-/// Roundings on the way to a Bernstein coefficient: of a weight, of a product, and of all sums but the first, and one
-/// of that sum of moduli. The proof allows for twice as many.
+/// The number of roundings up to a Bernstein coefficient: of a weight, of a product, of all sums except the first, and
+/// of the sum of moduli. The proof allows for twice as many.
 const ROUNDINGS: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
 const _: () = assert!(CONVERSION >= 2.0 * ROUNDINGS as f64 * UNIT_ROUNDOFF, "the margin of the proof");
 
-/// One polynomial without errors.
+/// A polynomial without errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExactPolynomial {
-    /// Coefficients, lowest power first; zeros behind `length`.
+    /// The coefficients, lowest power first; zeros after `length`.
     pub(crate) coefficients: [f64; MAX_COEFFICIENTS],
-    /// The number of them.
+    /// The number of coefficients.
     pub(crate) length: usize,
-    /// Sum of the original coefficients' bounds: the greatest change by one unit within `[0, 1]`, divided by `u`.
+    /// The sum of the original coefficients' bounds: the largest change by one unit within `[0, 1]`, divided by `u`.
     pub(crate) bound: f64,
 }
 
-/// Bernstein coefficients on some piece of `[0, 1]`, the last `6 - length` unused.
+/// Bernstein coefficients on a piece of `[0, 1]`; the last `6 - length` are unused.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Control {
     /// The coefficients.
     pub(crate) values: [f64; MAX_COEFFICIENTS],
-    /// The number of them.
+    /// The number of coefficients.
     pub(crate) length: usize,
-    /// By how much each may be off.
+    /// The maximum error of each coefficient.
     pub(crate) error: f64,
-    /// Which of the problem's polynomials it is.
+    /// The index of the polynomial in the problem.
     pub(crate) index: usize,
 }
 
@@ -58,7 +58,7 @@ pub(crate) struct Problem {
 }
 
 impl Problem {
-    /// Creates the choice at these ends, rounded outwards; coefficients without error stay as they are.
+    /// Creates the choice at the ends `ends`, rounded outward; coefficients without error are unchanged.
     ///
     /// # Panics
     /// With too many polynomials or coefficients.
@@ -88,13 +88,13 @@ impl Problem {
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
         self.polynomials().iter().all(|polynomial| {
-            // A product with 0 is 0 for finite numbers, else NaN.
+            // A product with 0 is 0 for finite numbers, otherwise NaN.
             polynomial.coefficients.iter().map(|value| value * 0.0).sum::<f64>() == 0.0
         })
     }
 
-    /// Returns whether one polynomial alone shows that nothing happens within the step, at which level, and how many
-    /// further units of the bounds this survives. An empty problem is excluded.
+    /// Returns, if one polynomial alone proves that there is no hit within the step, the level, and the number of
+    /// further units of the bounds that the result survives. An empty problem is excluded.
     #[inline]
     pub(crate) fn exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
@@ -106,7 +106,7 @@ impl Problem {
         by(ExactPolynomial::range, Level::Range).or_else(|| by(ExactPolynomial::bernstein, Level::Bernstein))
     }
 
-    /// Returns whether all polynomials are positive at 0 (exact, no arithmetic is needed).
+    /// Returns whether all polynomials are positive at 0 (exact, because no arithmetic is needed).
     #[inline]
     pub(crate) fn starts_positive(&self) -> bool {
         self.polynomials().iter().all(|polynomial| polynomial.coefficients[0] > 0.0)
@@ -129,8 +129,8 @@ impl Problem {
         })
     }
 
-    /// Returns the most powers of two over which the sizes of one polynomial's coefficients spread; zeros do not
-    /// count.
+    /// Returns the maximum number of powers of two over which the sizes of one polynomial's coefficients spread; zeros
+    /// do not count.
     pub(crate) fn spread(&self) -> u64 {
         let spread = |polynomial: &ExactPolynomial| {
             let exponents =
@@ -140,9 +140,9 @@ impl Problem {
         self.polynomials().iter().map(spread).max().unwrap_or(0)
     }
 
-    /// Returns the number of further units of the bounds that a hit survives: at the best of some times from this one
-    /// on, the least of the polynomials' values over their bounds. At least 0. The times are spread evenly over the
-    /// rest of the step, and ever closer after the first, because a hit may be short.
+    /// Returns the number of further units of the bounds that a hit survives, at least 0. It is the smallest of the
+    /// polynomials' values over their bounds, at the best of several times from `first` on. The times are spread evenly
+    /// over the rest of the step, and more closely after `first`, because a hit may be short.
     pub(crate) fn slack_of_yes(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
@@ -159,13 +159,13 @@ impl Problem {
     }
 }
 
-/// Returns one end of the interval that contains a coefficient, rounded outwards.
+/// Returns one end of the interval that contains a coefficient, rounded outward.
 #[inline]
 fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
     if units == 0.0 || coefficient.bound == 0.0 {
         return coefficient.value;
     }
-    // The factor and the last two terms cover the rounding of the products, of the sum, and underflow.
+    // The factor and the last two terms cover the rounding of the products and of the sum, and underflow.
     let reach = units * UNIT_ROUNDOFF * coefficient.bound * (1.0 + 8.0 * UNIT_ROUNDOFF)
         + coefficient.value.abs() * (2.0 * UNIT_ROUNDOFF)
         + f64::MIN_POSITIVE;
@@ -175,16 +175,16 @@ fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
     }
 }
 
-/// Returns the worth of a distance from zero, in units of a bound.
+/// Returns a distance from zero in units of a bound.
 #[inline]
 pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
-    // A hundredth less covers the rounding of the bound and of the quotient.
+    // One percent less covers the rounding of the bound and of the quotient.
     if bound > 0.0 { (0.99 * distance / (bound * UNIT_ROUNDOFF)).max(0.0) } else { f64::INFINITY }
 }
 
 impl ExactPolynomial {
-    /// Tries level L0: by signs (no coefficient is positive, so none of its values after 0 is), or because the positive
-    /// terms cannot make up for a negative constant.
+    /// Tries level L0: by signs (if no coefficient is positive, no value after 0 is), or because the positive terms
+    /// cannot compensate a negative constant.
     #[inline]
     fn range(&self) -> Option<f64> {
         let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
@@ -201,7 +201,7 @@ impl ExactPolynomial {
     /// Tries level L1: all Bernstein coefficients are negative.
     #[inline]
     fn bernstein(&self) -> Option<f64> {
-        // Positive at 0: no search is needed.
+        // Positive at 0, so no search is needed.
         if self.coefficients[0] > 0.0 {
             return None;
         }
@@ -211,8 +211,8 @@ impl ExactPolynomial {
         (distance > 0.0).then(|| slack(distance, self.bound))
     }
 
-    /// Returns the Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing follows
-    /// from it.
+    /// Returns the Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing is
+    /// concluded from it.
     #[inline]
     pub(crate) fn control(&self) -> Control {
         let values = match self.length {
@@ -254,13 +254,13 @@ impl ExactPolynomial {
         values
     }
 
-    /// Returns by how many units of the bound the value at `t` in `[0, 1]` exceeds zero, at least 0.
+    /// Returns the number of units of the bound by which the value at `t` in `[0, 1]` exceeds zero, at least 0.
     fn slack_at(&self, t: f64) -> f64 {
         let (value, error) = self.value_at(t);
         if value > error { slack(value - error, self.bound) } else { 0.0 }
     }
 
-    /// Returns the value at `t` in `[0, 1]`, and by how much it may be off.
+    /// Returns the value at `t` in `[0, 1]`, and its maximum error.
     pub(crate) fn value_at(&self, t: f64) -> (f64, f64) {
         let (mut value, mut size) = (0.0, 0.0);
         for &coefficient in self.coefficients[..self.length].iter().rev() {

@@ -1,11 +1,11 @@
 //! `e^x = 2^(k/128) e^r` with `|r| <= ln 2 / 256` (Tang, ACM TOMS 15, 1989; with a table of 128 powers).
 use super::{fused, tables::POWERS};
 
-/// 128 / ln 2.
+/// The number 128 / ln 2.
 const PARTS: f64 = f64::from_bits(0x4067_1547_652b_82fe);
-/// -ln 2 / 128 in two pieces; a product of the first with a small whole number is exact.
+/// The number -ln 2 / 128 in two parts; a product of the first with a small integer is exact.
 const MINUS_PART: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_bits(0xbd0c_f79a_bc9e_3b3a)];
-/// Adding this to a number rounds it to a whole one, which is in the lowest bits of the sum.
+/// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The coefficients of `e^r - 1 - r` from `r^2` on.
 const SERIES: [f64; 4] = [
@@ -44,15 +44,14 @@ pub fn exp(x: f64) -> f64 {
         return fused(power, more, power);
     }
     if k & 0x8000_0000 == 0 {
-        // The power may be too large for a number: it is made smaller by 2^1009 for a while.
+        // The power may be too large for a number, so it is temporarily reduced by 2^1009.
         let power = f64::from_bits(power.wrapping_sub(1009 << 52));
         return fused(power, more, power) * f64::from_bits((1023 + 1009) << 52);
     }
     scale_subnormal(f64::from_bits(power.wrapping_add(1022 << 52)), more) * f64::MIN_POSITIVE
 }
 
-/// Returns `power (1 + more)`, rounded as a subnormal number is, whose last bits a product with 2^-1022 would round
-/// once more.
+/// Returns `power (1 + more)`, rounded like a subnormal number; a product with 2^-1022 would round its last bits again.
 fn scale_subnormal(power: f64, more: f64) -> f64 {
     let change = power * more;
     let value = power + change;

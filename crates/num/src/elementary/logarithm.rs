@@ -1,7 +1,7 @@
 //! `ln x = k ln 2 + ln c + ln(z/c)` for `x = 2^k z` with a `c` close to `z` from a table (Tang, ACM TOMS 16, 1990).
 use super::{fused, tables::LOGARITHMS};
 
-/// ln 2 in two pieces; a product of the first with an exponent is exact.
+/// The number ln 2 in two parts; a product of the first with an exponent is exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
 /// The coefficients of `ln(1 + r) - r` from `r^2` on, for `|r| < 1/256`.
 const SERIES: [f64; 5] = [
@@ -27,10 +27,10 @@ const SERIES_AT_ONE: [f64; 11] = [
 ];
 /// The bits of 0.6875, where the table begins.
 const FIRST: u64 = 0x3fe6_0000_0000_0000;
-/// The bits of `1 - 2^-4`, and the number of numbers from there on that are close to one.
+/// The bits of `1 - 2^-4`, and the number of the following numbers that are close to one.
 const AT_ONE: u64 = 0x3fee_0000_0000_0000;
 const NUMBERS_AT_ONE: u64 = 0x0003_0900_0000_0000;
-/// 2^27: half of a number's bits.
+/// The number 2^27, for half of a number's bits.
 const HALF: f64 = 134_217_728.0;
 
 /// Returns the natural logarithm; `-inf` at zero, NaN below.
@@ -63,7 +63,8 @@ pub fn ln(x: f64) -> f64 {
     fused(r * square, inner, low) + sum
 }
 
-/// Returns the logarithm of a number close to one: the first two terms with twice the precision.
+/// Returns the logarithm of a number close to one, with the first two terms in double precision arithmetic of two
+/// parts.
 fn at_one(x: f64) -> f64 {
     if x == 1.0 {
         return 0.0;

@@ -1,34 +1,34 @@
-//! An angle less quarters of a turn: by π/2 in pieces (Cody and Waite), or, of very large angles, by the digits of 2/π
-//! (Payne and Hanek, SIGNUM 18, 1983).
+//! Reduces an angle by quarters of a turn: by π/2 in parts (Cody and Waite), or, for very large angles, by the digits
+//! of 2/π (Payne and Hanek, SIGNUM 18, 1983).
 use super::{fused, tables::TWO_OVER_PI};
 
-/// An angle near zero and the quarters of a turn that were taken from it, of which the last two bits count.
+/// An angle near zero, and the number of subtracted quarters of a turn, of which the last two bits count.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ReducedAngle {
     pub(super) quarters: u32,
     pub(super) angle: f64,
-    /// The difference of the angle from its nearest number.
+    /// The difference of the angle from its nearest double.
     pub(super) rest: f64,
 }
 
-/// π/2 in two pieces.
+/// The number π/2 in two parts.
 pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
-/// 2/π.
+/// The number 2/π.
 const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
-/// Adding this to a number rounds it to a whole one, which is in the lowest bits of the sum.
+/// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
-/// The constant for multiples of four.
+/// The constant that rounds to multiples of four.
 const ROUNDS_TO_TURNS: f64 = f64::from_bits(0x4358_0000_0000_0000);
-/// π/2 in four pieces; products of the first three with the quarters of a near angle are exact.
+/// The number π/2 in four parts; products of the first three with the quarters of a near angle are exact.
 const PIECES: [f64; 4] = [
     f64::from_bits(0x3ff9_21fb_5800_0000),
     f64::from_bits(0xbe4d_de97_3c00_0000),
     f64::from_bits(0xbc8c_b3b3_9800_0000),
     f64::from_bits(0xbacd_747f_23e3_2ed7),
 ];
-/// π/2 in two pieces of half of a number's bits.
+/// The number π/2 in two parts of half of a number's bits.
 const HALVES: [f64; 2] = [PIECES[0], f64::from_bits(0xbe4d_de97_4000_0000)];
-/// A number times this, less the rest, is its upper half: 2^27 + 1.
+/// The factor 2^27 + 1 that splits a number into two halves of its bits.
 const SPLITS: f64 = 134_217_729.0;
 
 /// Returns a power of two.
@@ -79,7 +79,8 @@ pub(super) fn far(x: f64) -> ReducedAngle {
     ReducedAngle { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
 }
 
-/// Quarters of a turn: whole ones (less whole turns), a part of one, and the rest that its nearest number lacks.
+/// A number of quarters of a turn: whole quarters (without whole turns), a fraction, and the rounding error of the
+/// fraction.
 struct Quarters {
     whole: f64,
     part: f64,

@@ -1,10 +1,10 @@
-//! The tables of the elementary functions: figures of the GNU C library since 2.28, as bits.
+//! The tables of the elementary functions: the values of the GNU C library since 2.28, as bits.
 //!
-//! Those of `e^x`, of the angles and of `2/π` follow from mathematics, except for the last bit of 17 small parts.
+//! The tables of `e^x`, of the angles and of `2/π` follow from mathematics, except for the last bit of 17 small parts.
 #![cfg_attr(rustfmt, rustfmt::skip)]
 
-/// For `i` from 0 to 127: what `2^(i/128)` is more than its nearest number, in parts of it, and the bits of that number
-/// less `i << 45`.
+/// For `i` in 0..128: the relative rounding error of the double nearest to 2^(i/128), then that double's bits minus `i
+/// << 45`.
 pub(super) const POWERS: [u64; 256] = [
     0x0000000000000000, 0x3ff0000000000000, 0x3c9b3b4f1a88bf6e, 0x3feff63da9fb3335, 0xbc7160139cd8dc5d,
     0x3fefec9a3e778061, 0xbc905e7a108766d1, 0x3fefe315e86e7f85, 0x3c8cd2523567f613, 0x3fefd9b0d3158574,
@@ -60,7 +60,7 @@ pub(super) const POWERS: [u64; 256] = [
     0x3feff3c22b8f71f1,
 ];
 
-/// For each of 128 intervals of `[0.6875, 1.375)`: a number close to `1/c` and one close to `ln c`, of a `c` near the
+/// For each of 128 intervals of `[0.6875, 1.375)`: a number close to `1/c` and one close to `ln c`, for a `c` near the
 /// interval's middle.
 pub(super) const LOGARITHMS: [u64; 256] = [
     0x3ff734f0c3e0de9f, 0xbfd7cc7f79e69000, 0x3ff713786a2ce91f, 0xbfd76feec20d0000, 0x3ff6f26008fab5a0,
@@ -117,7 +117,7 @@ pub(super) const LOGARITHMS: [u64; 256] = [
     0x3fd432eee32fe000,
 ];
 
-/// For `i` from 0 to 109: the sine and the cosine of `i/128`, each with the rest that its nearest number lacks.
+/// For `i` in 0..110: the sine and the cosine of `i/128`, each with the rounding error of its nearest double.
 pub(super) const ANGLES: [u64; 440] = [
     0x0000000000000000, 0x0000000000000000, 0x3ff0000000000000, 0x0000000000000000,
     0x3f7fffeaaaaeeeef, 0xbc1e45e2ec67b77c, 0x3fefffc000155552, 0x3c8f4a01a0196dae,
@@ -231,7 +231,7 @@ pub(super) const ANGLES: [u64; 440] = [
     0x3fe812ede9ae4ba4, 0xbc87830adf402dda, 0x3fe514f57d7bf3da, 0x3c747a108073c259,
 ];
 
-/// The digits of `2/π` behind the point, to base 2^24.
+/// The digits of `2/π` after the point, in base 2^24.
 pub(super) const TWO_OVER_PI: [u32; 75] = [
     0xa2f983, 0x6e4e44, 0x1529fc, 0x2757d1, 0xf534dd, 0xc0db62, 0x95993c, 0x439041, 0xfe5163, 0xabdebb,
     0xc561b7, 0x246e3a, 0x424dd2, 0xe00649, 0x2eea09, 0xd1921c, 0xfe1deb, 0x1cb129, 0xa73ee8, 0x8235f5,

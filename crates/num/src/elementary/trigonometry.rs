@@ -1,20 +1,20 @@
-//! Sine and cosine by a table of angles in steps of 1/128 and short series in between, as IBM's library does it (Gal
-//! and Bachelis, ACM TOMS 17, 1991). An angle beyond the table's is first brought near zero.
+//! Sine and cosine by a table of angles in steps of 1/128 and short series in between, like IBM's library (Gal and
+//! Bachelis, ACM TOMS 17, 1991). An angle beyond the table is first reduced to one near zero.
 use super::{
     fused,
     reduction::{QUARTER, ReducedAngle, far, near},
     tables::ANGLES,
 };
 
-/// The high words of the angles where the next way begins.
+/// The high words of the angles at which the next method begins.
 const SINE_IS_ANGLE: u32 = 0x3e50_0000;
 const COSINE_IS_ONE: u32 = 0x3e40_0000;
 const TABLE_ENDS: u32 = 0x3feb_6000;
 const QUARTER_ENDS: u32 = 0x4003_68fd;
 const NEAR_ENDS: u32 = 0x4199_21fb;
-/// Adding this to an angle rounds it to 1/128; the number of the step is in the lowest bits of the sum.
+/// The constant that, added to an angle, rounds it to 1/128; the number of the step is in the lowest bits of the sum.
 const ROUNDS: f64 = f64::from_bits(0x42c8_0000_0000_0000);
-/// Below this angle Taylor's series does without the table.
+/// The angle below which Taylor's series is used without the table.
 const TAYLOR_ENDS: f64 = f64::from_bits(0x3fc0_20c4_9ba5_e354);
 /// Taylor's series of the sine from `x^3` on.
 const TAYLOR: [f64; 5] = [
@@ -54,7 +54,7 @@ pub fn cos(angle: f64) -> f64 {
     }
 }
 
-/// Returns the upper half of the bits of an angle's modulus: in the order of the angles.
+/// Returns the upper half of the bits of an angle's modulus, which has the order of the angles.
 fn high_word(angle: f64) -> u32 {
     (angle.abs().to_bits() >> 32) as u32
 }
@@ -67,15 +67,15 @@ fn reduce(angle: f64, word: u32) -> Option<ReducedAngle> {
     }
 }
 
-/// Returns the sine of an angle that is larger by this number of quarter turns.
+/// Returns the sine of an angle plus `more` quarter turns.
 fn at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u32) -> f64 {
     let quarter = quarters + more;
     let value = if quarter & 1 == 0 { sine(angle, rest) } else { cosine(angle, rest) };
     if quarter & 2 == 0 { value } else { -value }
 }
 
-/// Returns the next angle of the table, which the sum's lowest bits name, with the difference to it.
-fn looked_up(modulus: f64) -> ([f64; 4], f64) {
+/// Returns the nearest angle of the table, whose index is in the sum's lowest bits, and the difference from it.
+fn nearest_angle(modulus: f64) -> ([f64; 4], f64) {
     let sum = ROUNDS + modulus;
     let row = 4 * (sum.to_bits() as u32) as usize;
     (std::array::from_fn(|i| f64::from_bits(ANGLES[row + i])), modulus - (sum - ROUNDS))
@@ -88,27 +88,27 @@ fn sine(x: f64, dx: f64) -> f64 {
         let series = TAYLOR.iter().rev().copied().reduce(|sum, next| fused(sum, square, next)).unwrap_or(0.0);
         return x + fused(square, fused(series, x, -(0.5 * dx)), dx);
     }
-    let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
+    let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let dx = if x <= 0.0 { -dx } else { dx };
     let square = difference * difference;
     let s = difference + fused(difference * square, fused(SINE[1], square, SINE[0]), dx);
-    let c = fused(difference, dx, square * one_less_cosine(square));
+    let c = fused(difference, dx, square * cosine_complement(square));
     let rest = fused(-c, sine, fused(s, cosine_rest, sine_rest));
     (sine + fused(s, cosine, rest)).copysign(x)
 }
 
-/// Returns the cosine of `x + dx`, for arguments as of [`sine`].
+/// Returns the cosine of `x + dx`, for the same arguments as [`sine`].
 fn cosine(x: f64, dx: f64) -> f64 {
-    let ([sine, sine_rest, cosine, cosine_rest], difference) = looked_up(x.abs());
+    let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let difference = difference + if x < 0.0 { -dx } else { dx };
     let square = difference * difference;
     let s = fused(difference * square, fused(SINE[1], square, SINE[0]), difference);
-    let c = square * one_less_cosine(square);
+    let c = square * cosine_complement(square);
     let rest = fused(-c, cosine, fused(-s, sine_rest, cosine_rest));
     cosine + fused(-s, sine, rest)
 }
 
-/// Returns `(1 - cos x) / x^2` for a small `x` of this square.
-fn one_less_cosine(square: f64) -> f64 {
+/// Returns `(1 - cos x) / x²` for a small `x` with this square.
+fn cosine_complement(square: f64) -> f64 {
     fused(square, fused(COSINE[2], square, COSINE[1]), COSINE[0])
 }

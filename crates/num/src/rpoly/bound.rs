@@ -3,14 +3,13 @@
 use super::{Coefficients, DoesNotTerminate};
 use crate::elementary::{exp, ln};
 
-/// Newton steps after which the iteration is known to cycle; every other one makes fewer than 500.
+/// The number of Newton steps after which the iteration is known to cycle; every other iteration takes fewer than 500.
 const MAX_NEWTON_STEPS: usize = 1000;
 
-/// Returns the bound for a polynomial of degree `N`; 0 when its constant term is 0. The steps that it takes are added
-/// to `steps`.
+/// Returns the bound for a polynomial of degree `N`; 0 if its constant term is 0. Its steps are added to `steps`.
 ///
 /// # Errors
-/// [`DoesNotTerminate`] when a coefficient is not finite, or when the Newton iteration cycles among subnormals.
+/// [`DoesNotTerminate`] if a coefficient is not finite, or if the Newton iteration cycles among subnormal numbers.
 #[inline]
 pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients, steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     if !polynomial[..=N].iter().all(|coefficient| coefficient.is_finite()) {
@@ -41,8 +40,8 @@ fn start<const N: usize>(moduli: &Coefficients) -> f64 {
     mean
 }
 
-/// Divides by ten as long as the polynomial stays positive. With finite coefficients this ends after some 600 rounds
-/// at the latest, at zero.
+/// Divides by ten while the polynomial stays positive. With finite coefficients this ends after about 600 rounds at the
+/// latest, at zero.
 #[inline]
 fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) -> f64 {
     loop {
@@ -59,8 +58,8 @@ fn decimate<const N: usize>(moduli: &Coefficients, mut x: f64, steps: &mut u32) 
     }
 }
 
-/// Runs Newton's iteration until a step changes less than half a per cent. With `x = 0` the ratio is NaN and none is
-/// made.
+/// Runs Newton's iteration until a step changes less than half a percent. With `x = 0` the ratio is NaN and there is no
+/// step.
 #[inline]
 fn newton<const N: usize>(moduli: &Coefficients, mut x: f64, all_steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     let mut step = x;

@@ -1,22 +1,22 @@
-//! The constants of the root finder (root-finder.md 1). All are plain binary64; the tests hold their bits.
+//! The constants of the root finder (root-finder.md 1). All are plain binary64; the tests compare their bits.
 
-/// Unit error: the decimal, not 2^-52.
+/// The unit error, as a decimal number instead of 2^-52.
 pub(super) const ETA: f64 = 2.22e-16;
 /// A "large" number, of single precision's size.
 pub(super) const LARGE: f64 = 3.4e38;
 /// A "small" number.
 pub(super) const SMALL: f64 = 1.2e-38;
-/// Scaling brings the smallest coefficient near this.
+/// The target of scaling for the smallest coefficient.
 pub(super) const LAMBDA: f64 = SMALL / ETA;
-/// Weights of the rounding-error bounds.
+/// The weights of the rounding-error bounds.
 pub(super) const ETA_2: f64 = ETA + ETA;
 pub(super) const ETA_7: f64 = 5.0 * ETA + 2.0 * ETA;
 pub(super) const ETA_9: f64 = 5.0 * ETA + 4.0 * ETA;
 
-/// First direction of the shift.
+/// The first direction of the shift.
 pub(super) const START_X: f64 = f64::from_bits(0x3FE6_A09E_667F_3BCD);
 pub(super) const START_Y: f64 = -START_X;
-/// Each shift turns the direction by 94 degrees.
+/// The rotation of the direction by 94 degrees for each shift.
 pub(super) const ROTATION_COSINE: f64 = f64::from_bits(0xBFB1_DB90_2EC1_47E0);
 pub(super) const ROTATION_SINE: f64 = f64::from_bits(0x3FEF_EC0B_6FC0_5F20);
 

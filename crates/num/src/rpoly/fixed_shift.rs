@@ -23,7 +23,7 @@ struct Measure {
 impl Convergence {
     const START: Self = Self { previous: 0.0, previous_change: 1.0, threshold: 0.25 };
 
-    /// Returns the measure by which two successive small relative changes pass.
+    /// Returns the measure, which passes after two successive small relative changes.
     #[inline(always)]
     fn measure(&self, estimate: f64) -> Measure {
         let change = if estimate == 0.0 { 1.0 } else { ((estimate - self.previous) / estimate).abs() };
@@ -37,15 +37,15 @@ impl Convergence {
         self.previous_change = change;
     }
 
-    /// Tightens the measure: after an iteration has failed, convergence must be clearer before it is tried again.
+    /// Tightens the measure. After a failed iteration, convergence must be clearer before the next attempt.
     #[inline(always)]
     fn tighten(&mut self) {
         self.threshold *= 0.25;
     }
 }
 
-/// Iterates with the fixed factor `z^2 + u z + v` until an iteration started from the estimates succeeds, `limit` steps
-/// at most. All steps, including those of the iterations, are added to `steps`.
+/// Iterates with the fixed factor `z² + u z + v` until an iteration started from the estimates succeeds, at most
+/// `limit` steps. All steps, including those of the iterations, are added to `steps`.
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,
     mut k: Coefficients,
@@ -83,7 +83,7 @@ pub(super) fn run<const N: usize>(
     None
 }
 
-/// The state of the fixed-shift stage at the moment when a sequence passes.
+/// The state of the fixed-shift stage when a sequence passes.
 struct Attempt<'a> {
     polynomial: &'a Coefficients,
     k: Coefficients,
@@ -93,7 +93,7 @@ struct Attempt<'a> {
     by_zero: Measure,
 }
 
-/// The place in the chain of iterations.
+/// The position in the chain of iterations.
 enum Stage {
     Quadratic,
     Linear,
@@ -139,7 +139,7 @@ impl Attempt<'_> {
                     zero_tried = true;
                     real.tighten();
                     if let linear_iteration::Outcome::Cluster(s) = outcome {
-                        // The double zero at s; K stays as the linear iteration left it.
+                        // The double zero at s; K is unchanged since the linear iteration.
                         u = -(s + s);
                         v = s * s;
                         Stage::Quadratic

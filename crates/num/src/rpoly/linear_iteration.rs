@@ -4,16 +4,16 @@ use super::{
     constants::{ETA, ETA_2},
 };
 
-/// Passes without success after which the iteration fails.
+/// The number of unsuccessful steps after which the iteration fails.
 const MAX_STEPS: usize = 10;
 
-/// The end of a linear iteration.
+/// The result of a linear iteration.
 pub(super) enum Outcome {
-    /// A zero, and the quotient.
+    /// A zero was found. Holds it and the quotient.
     Zero(f64, Coefficients),
-    /// The iteration rests near this point: two zeros may be close together.
+    /// The iteration stalls near this point, so two zeros may be close together.
     Cluster(f64),
-    /// No convergence.
+    /// The iteration did not converge.
     Failed,
 }
 
@@ -60,7 +60,7 @@ pub(super) fn run<const N: usize>(
     }
 }
 
-/// Runs Horner's scheme: the quotient by `z - s`, and in entry `N` the value at `s`.
+/// Runs Horner's scheme. Returns the quotient by `z - s`, with the value at `s` in entry `N`.
 #[inline(always)]
 fn horner<const N: usize>(polynomial: &Coefficients, s: f64) -> Coefficients {
     let mut q = Coefficients::default();

@@ -1,12 +1,12 @@
-//! All zeros of one real polynomial by the Jenkins-Traub algorithm, bit for bit as the original.
+//! Finds all zeros of one real polynomial by the Jenkins-Traub algorithm, bit for bit like the original.
 //!
-//! Jenkins and Traub, *A three-stage algorithm for real polynomials using quadratic iteration*, SIAM J. Numer. Anal.
-//! 7, 1970; Jenkins, *Algorithm 493: Zeros of a real polynomial*, ACM TOMS 1, 1975; in the variant that root-finder.md
-//! part I describes. The stages carry the names of the papers, one file each. Nothing is remembered between calls,
-//! nothing allocates, and no operation is reordered: where a formula looks odd, it is odd in the original.
+//! Jenkins and Traub, *A three-stage algorithm for real polynomials using quadratic iteration*, SIAM J. Numer. Anal. 7,
+//! 1970; Jenkins, *Algorithm 493: Zeros of a real polynomial*, ACM TOMS 1, 1975; in the variant of root-finder.md part
+//! I. The stages have the names of the papers, one file each. Nothing is stored between calls, nothing allocates, and
+//! no operation is reordered: unusual formulas are the original's.
 //!
-//! The degree of the current polynomial is a compile-time parameter `N` of the inner functions, so that their loops
-//! unroll and their index checks vanish; this changes no operation.
+//! The degree of the current polynomial is a compile-time parameter `N` of the inner functions, so that their loops are
+//! unrolled and their index checks removed; this changes no operation.
 
 mod bound;
 mod constants;
@@ -23,22 +23,22 @@ use constants::{ROTATION_COSINE, ROTATION_SINE, START_X, START_Y};
 /// The highest degree that [`zeros`] accepts; the simulator itself needs five.
 pub const MAX_DEGREE: usize = 6;
 
-/// The shifts that are tried before the search gives up.
+/// The number of shifts after which the search stops.
 const MAX_SHIFTS: usize = 20;
 
-/// Coefficients of a polynomial or of a quotient, highest power first; those beyond the degree are unused.
+/// The coefficients of a polynomial or of a quotient, highest power first; those beyond the degree are unused.
 type Coefficients = [f64; MAX_DEGREE + 1];
 
-/// A zero: real and imaginary part.
+/// A zero, as real and imaginary part.
 type Zero = (f64, f64);
 
-/// The search would never end: a coefficient is not finite (root-finder.md 9.4), or the Newton iteration of the bound
-/// cycles among subnormal numbers (9.5). The original hangs here.
+/// The error if the search would never end: a coefficient is not finite (root-finder.md 9.4), or the Newton iteration
+/// of the bound cycles among subnormal numbers (9.5). The original hangs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the root search does not terminate")]
 pub struct DoesNotTerminate;
 
-/// The zeros of a polynomial **in the order in which they were found**: neither sorted nor by modulus.
+/// The zeros of a polynomial **in the order in which they were found**, not sorted.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Zeros {
     rejected: bool,
@@ -50,23 +50,23 @@ pub struct Zeros {
 impl Zeros {
     const REJECTED: Self = Self { rejected: true, length: 0, steps: 0, list: [(0.0, 0.0); MAX_DEGREE] };
 
-    /// Returns the count that the original returns: the degree, less when the search gave up, `-1` when the polynomial
-    /// was rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
+    /// Returns the count that the original returns: the degree, less if the search stopped early, or `-1` if the
+    /// polynomial was rejected (a leading zero, or `c z^m`; root-finder.md 2 and 3).
     #[must_use]
     pub fn count(&self) -> i32 {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "at most six")]
         if self.rejected { -1 } else { self.length as i32 }
     }
 
-    /// Returns the zeros as pairs (real part, imaginary part); none when the polynomial was rejected.
+    /// Returns the zeros as pairs (real part, imaginary part); empty if the polynomial was rejected.
     #[inline]
     #[must_use]
     pub fn as_slice(&self) -> &[(f64, f64)] {
         &self.list[..self.length]
     }
 
-    /// Returns the steps of all stages together: some dozens as a rule, thousands where polynomials are nearly nothing
-    /// but round-off or subnormal. Only the time that the search took depends on them.
+    /// Returns the number of steps of all stages together: usually a few dozen, thousands if a polynomial is mostly
+    /// round-off or subnormal. Only the duration of the search depends on it.
     #[must_use]
     pub fn steps(&self) -> u32 {
         self.steps
@@ -79,17 +79,17 @@ impl Zeros {
     }
 }
 
-/// The result of a search stage, with the polynomial that is left: its first `n + 1 - found` coefficients.
+/// The result of a search stage, with the remaining polynomial: its first `n + 1 - found` coefficients.
 enum SearchResult {
     One { zero: f64, quotient: Coefficients },
     Two { zeros: [Zero; 2], quotient: Coefficients },
 }
 
-/// Returns all zeros of the polynomial with these coefficients, highest power first (root-finder.md 3).
+/// Returns all zeros of the polynomial with the given coefficients, highest power first (root-finder.md 3).
 ///
-/// The result depends only on the coefficients. A leading zero and `c z^m` are rejected; when all twenty shifts fail,
-/// the zeros found before that are returned. Degrees 1 and 2 use closed forms and accept coefficients that are not
-/// finite; the zeros are then whatever infinities and NaN the formulas give.
+/// The result depends only on the coefficients. A leading zero and `c z^m` are rejected. If all twenty shifts fail, the
+/// zeros found before are returned. Degrees 1 and 2 use closed forms and accept coefficients that are not finite; the
+/// zeros are then the infinities and NaN of the formulas.
 ///
 /// # Errors
 /// [`DoesNotTerminate`] for inputs with which the original hangs.
@@ -109,7 +109,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
         degree -= 1;
     }
     match degree {
-        // Zeros at the origin that have just been found are discarded.
+        // Zeros at the origin that were just found are discarded.
         0 => return Ok(Zeros::REJECTED),
         1 | 2 => solve_closed_form(&mut zeros, &coefficients[..=degree]),
         _ => {
@@ -121,7 +121,7 @@ pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
     Ok(zeros)
 }
 
-/// Finds the zeros of a line or a parabola: the ends of the recursion.
+/// Finds the zeros of a line or a parabola, which end the recursion.
 #[inline]
 fn solve_closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
     match *coefficients {
@@ -162,7 +162,7 @@ fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) ->
     }
 }
 
-/// Makes one search: scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and 6).
+/// Performs one search: scaling, bound, no-shift stage, then up to twenty shifts (root-finder.md 3, steps 5 and 6).
 #[inline(never)]
 fn find<const N: usize>(
     polynomial: &mut Coefficients,
@@ -176,7 +176,7 @@ fn find<const N: usize>(
         let (x, y) = *direction;
         *direction = (ROTATION_COSINE * x - ROTATION_SINE * y, ROTATION_SINE * x + ROTATION_COSINE * y);
         let real_part = bound * direction.0;
-        // The published algorithm has the bound's square here; the original has the bound.
+        // The published algorithm has the square of the bound here; the original has the bound.
         let found = fixed_shift::run::<N>(polynomial, start, -2.0 * real_part, bound, MAX_SHIFTS * shift, steps);
         if found.is_some() {
             return Ok(found);

@@ -1,7 +1,7 @@
-//! The no-shift stage: five steps that let the small zeros stand out (root-finder.md 10).
+//! The no-shift stage: five steps that make the small zeros stand out (root-finder.md 10).
 use super::{Coefficients, constants::ETA};
 
-/// The steps of this stage.
+/// The number of steps of this stage.
 const STEPS: usize = 5;
 
 /// Returns the K polynomial (degree `N - 1`) after five steps without shift, started from the derivative divided by

@@ -1,7 +1,7 @@
-//! Quadratic factors: dividing by one, and its zeros (root-finder.md 4 and 5).
+//! Division by quadratic factors, and their zeros (root-finder.md 4 and 5).
 use super::{Coefficients, Zero};
 
-/// Divides a polynomial of degree `M` by `z^2 + u z + v`; the last two entries are the remainder's.
+/// Divides a polynomial of degree `M` by `z² + u z + v`; the last two entries are the remainder.
 #[inline(always)]
 pub(super) fn divide<const M: usize>(f: &Coefficients, u: f64, v: f64) -> Coefficients {
     let mut g = Coefficients::default();
@@ -13,9 +13,10 @@ pub(super) fn divide<const M: usize>(f: &Coefficients, u: f64, v: f64) -> Coeffi
     g
 }
 
-/// Returns the zeros of `a z^2 + b z + c`, the smaller first; in a complex pair the positive imaginary part first.
+/// Returns the zeros of `a z² + b z + c`, the smaller first; for a complex pair, the one with the positive imaginary
+/// part first.
 ///
-/// `a = 0` gives the zero of the line and a second zero at the origin. Coefficients need not be finite.
+/// `a = 0` gives the zero of the line and a second zero at the origin. Coefficients may be infinite or NaN.
 #[inline]
 pub(super) fn zeros(a: f64, b: f64, c: f64) -> [Zero; 2] {
     if a == 0.0 {
@@ -25,7 +26,7 @@ pub(super) fn zeros(a: f64, b: f64, c: f64) -> [Zero; 2] {
         return [(0.0, 0.0), (-b / a, 0.0)];
     }
     let half = b / 2.0;
-    // The discriminant, divided by whichever of its terms is larger.
+    // The discriminant, divided by the larger of its terms.
     let (discriminant, root) = if half.abs() < c.abs() {
         let signed = if c < 0.0 { -a } else { a };
         let e = half * (half / c.abs()) - signed;
@@ -39,10 +40,10 @@ pub(super) fn zeros(a: f64, b: f64, c: f64) -> [Zero; 2] {
         let im = (root / a).abs();
         return [(re, im), (re, -im)];
     }
-    // A NaN discriminant ends here as well.
+    // A NaN discriminant also ends here.
     let root = if half >= 0.0 { -root } else { root };
     let large = (-half + root) / a;
-    // The test is written as the original's: a NaN is not zero.
+    // The test is written like the original's: a NaN is not zero.
     let small = if large == 0.0 { 0.0 } else { (c / large) / a };
     [(small, 0.0), (large, 0.0)]
 }

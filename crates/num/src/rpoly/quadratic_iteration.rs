@@ -6,12 +6,12 @@ use super::{
     scalars::{Division, Scalars},
 };
 
-/// Passes without success after which the iteration fails.
+/// The number of unsuccessful steps after which the iteration fails.
 const MAX_STEPS: usize = 20;
-/// Steps of the cluster's extra fixed-shift loop.
+/// The number of steps of the additional fixed-shift loop for clusters.
 const CLUSTER_STEPS: usize = 5;
 
-/// Returns two zeros and the quotient, from the starting factor `z^2 + u z + v`; `None` on failure, with `k` changed.
+/// Returns two zeros and the quotient, from the starting factor `z² + u z + v`; `None` on failure, with `k` changed.
 #[inline]
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,

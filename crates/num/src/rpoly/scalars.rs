@@ -1,16 +1,16 @@
-//! The scalars of a K polynomial, the next K polynomial and the new estimate of the quadratic factor
-//! (root-finder.md 6 and 7).
+//! The scalars of a K polynomial, the next K polynomial, and the new estimate of the quadratic factor (root-finder.md 6
+//! and 7).
 //!
-//! With `a`, `b` from the division of P and `c`, `d` from that of K, the published formulas are those in
-//! `bc - ad`, `a^2 + uab + vb^2` and `ac + uad + vbd`, divided by `c` or by `d`, whichever is larger.
+//! With `a`, `b` from the division of P and `c`, `d` from that of K, the published formulas use `bc - ad`, `a² + uab +
+//! vb²` and `ac + uad + vbd`, divided by `c` or by `d`, whichever has the larger modulus.
 use super::{Coefficients, constants::ETA, quadratic};
 
-/// The quadratic factor `z^2 + u z + v` and the polynomial of degree `N` divided by it.
+/// The quadratic factor `z² + u z + v`, and the polynomial of degree `N` divided by it.
 #[derive(Clone, Copy)]
 pub(super) struct Division<const N: usize> {
     pub(super) u: f64,
     pub(super) v: f64,
-    /// Quotient, then the two entries of the remainder.
+    /// The quotient, followed by the two entries of the remainder.
     pub(super) q: Coefficients,
 }
 
@@ -31,14 +31,14 @@ impl<const N: usize> Division<N> {
     }
 }
 
-/// Which of the remainder's entries the formulas are divided by.
+/// The entry of the remainder by which the formulas are divided.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ScalarKind {
-    /// By `c`, the larger.
+    /// The formulas are divided by `c`, which is larger.
     ByC,
-    /// By `d`.
+    /// The formulas are divided by `d`.
     ByD,
-    /// Neither: the factor nearly divides K, and the other scalars are not computed.
+    /// The factor nearly divides K, and the other scalars are not computed.
     Divides,
 }
 
@@ -132,7 +132,7 @@ impl<const N: usize> Scalars<N> {
         k
     }
 
-    /// Returns the new estimate `(u, v)` of the quadratic factor; `(0, 0)` when there is none.
+    /// Returns the new estimate `(u, v)` of the quadratic factor; `(0, 0)` if there is none.
     #[inline(always)]
     pub(super) fn estimate(&self, k: &Coefficients, polynomial: &Coefficients, division: &Division<N>) -> (f64, f64) {
         let Self { c, d, s, g, y, phi, delta, psi, .. } = *self;

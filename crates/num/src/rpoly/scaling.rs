@@ -5,8 +5,8 @@ use super::{
 };
 use crate::elementary::ln;
 
-/// Multiplies the coefficients by a power of two such that the smallest comes near 5.4e-23, unless they are moderate
-/// already or would become too large. NaN coefficients are ignored in the decision.
+/// Multiplies the coefficients by a power of two for which the smallest is near 5.4e-23, unless they are already
+/// moderate or would become too large. NaN coefficients are ignored in the decision.
 #[inline]
 pub(super) fn scale<const N: usize>(polynomial: &mut Coefficients) {
     let (mut largest, mut smallest) = (0.0, LARGE);
@@ -23,7 +23,7 @@ pub(super) fn scale<const N: usize>(polynomial: &mut Coefficients) {
     if (factor > 1.0 && LARGE / factor < largest) || (factor <= 1.0 && largest < 10.0) {
         return;
     }
-    // Truncated toward zero, also when negative; it is between -201 and 1000, so the power is a normal number.
+    // Truncated toward zero, even if negative. It is between -201 and 1000, so the power is a normal number.
     #[expect(clippy::cast_possible_truncation, reason = "truncation is what the original does")]
     let exponent = (ln(factor) / std::f64::consts::LN_2 + 0.5) as i64;
     if exponent != 0 {

@@ -1,34 +1,34 @@
-//! A GIF: 256 colors for the whole film, chosen from the scene's own.
+//! A GIF film with 256 colors, chosen from the scene's own colors.
 //!
-//! Edges of shapes are blends of two colors; the palette holds the way from each color to the background in steps,
-//! and a cube of all colors where there is room. What is not in it becomes the nearest that is.
-use super::{Rate, changed::ChangedArea};
+//! Edges of shapes are blends of two colors. The palette holds steps from each color to the background, and a cube of
+//! all colors if there is room. Other colors are replaced by the nearest one in the palette.
+use super::{Rate, changed_area::ChangedArea};
 use crate::{color::Rgb, raster::Raster, size::Size};
 use std::{
     collections::{BTreeSet, HashMap},
     io::{self, Write},
 };
 
-/// Steps on the way from a color to the background.
+/// The number of steps from a color to the background.
 const STEPS: u8 = 8;
 
-/// A GIF that is being written.
+/// A GIF film that is being written.
 pub struct Gif<'a> {
     encoder: gif::Encoder<&'a mut dyn Write>,
     size: Size,
     rate: Rate,
     palette: Vec<Rgb>,
-    /// Colors that have been looked up.
+    /// The palette indices of known colors.
     known: HashMap<[u8; 3], u8>,
     before: Vec<u8>,
     pictures: u64,
 }
 
 impl<'a> Gif<'a> {
-    /// Begins a film, which repeats forever, in these colors, the background first.
+    /// Begins a film that repeats forever, in the given colors, with the background first.
     ///
     /// # Errors
-    /// When `out` can't be written, or the pictures are larger than a GIF allows.
+    /// If `out` cannot be written, or the pictures are larger than a GIF allows.
     pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colors: &[Rgb]) -> io::Result<Self> {
         let palette = palette(colors);
         let bytes: Vec<u8> = palette.iter().flat_map(|color| color.0).collect();
@@ -40,7 +40,7 @@ impl<'a> Gif<'a> {
     /// Appends a picture.
     ///
     /// # Errors
-    /// When it can't be written.
+    /// If it cannot be written.
     pub fn write_picture(&mut self, raster: &Raster) -> io::Result<()> {
         let (palette, known) = (&self.palette, &mut self.known);
         let after: Vec<u8> = raster
@@ -52,7 +52,7 @@ impl<'a> Gif<'a> {
             })
             .collect();
         let part = ChangedArea::between(self.size, &self.before, &after);
-        // Delays are hundredths of a second: their sum stays true at every rate.
+        // Delays are hundredths of a second, chosen so that their sum is right at every rate.
         let at = |pictures: u64| 100 * pictures / u64::from(self.rate.per_second());
         let delay = at(self.pictures + 1) - at(self.pictures);
         let frame = gif::Frame {
@@ -74,13 +74,13 @@ impl<'a> Gif<'a> {
     /// Ends the film.
     ///
     /// # Errors
-    /// When it can't be written.
+    /// If it cannot be written.
     pub fn finish(self) -> io::Result<()> {
         self.encoder.into_inner().map_err(error)?.flush()
     }
 }
 
-/// Returns a side of a picture or a place in it; sizes are far below the limit.
+/// Returns a side of a picture, or a position in it; sizes are far below the limit.
 fn side(pixels: u32) -> u16 {
     u16::try_from(pixels).unwrap_or(u16::MAX)
 }
@@ -92,7 +92,7 @@ fn error(error: gif::EncodingError) -> io::Error {
     }
 }
 
-/// Returns at most 256 colors: the given ones first, then steps towards the first one, then a cube of all colors.
+/// Returns at most 256 colors: the given ones first, then steps toward the first one, then a cube of all colors.
 fn palette(colors: &[Rgb]) -> Vec<Rgb> {
     let background = colors.first().copied().unwrap_or(Rgb::WHITE);
     let mut palette = Vec::new();
@@ -103,7 +103,7 @@ fn palette(colors: &[Rgb]) -> Vec<Rgb> {
         }
     };
     colors.iter().copied().for_each(&mut add);
-    // Half the way first: where there are many colors, few steps of each are better than all of a few.
+    // The middle step first: with many colors, few steps of each are better than all steps of a few.
     for step in [4, 2, 6, 1, 3, 5, 7] {
         debug_assert!(step < STEPS);
         colors.iter().for_each(|&color| add(color.towards(background, step)));

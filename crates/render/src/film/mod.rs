@@ -1,5 +1,5 @@
-//! Pictures to files: one PNG, a GIF. Encoders are fed picture by picture and hold two at most.
-mod changed;
+//! Encodes pictures to files: one PNG, or a GIF. Encoders receive picture by picture and hold at most two.
+mod changed_area;
 mod gif;
 mod png;
 
@@ -9,17 +9,17 @@ pub use self::{gif::Gif, png::write_png};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Rate(u16);
 
-/// The fastest rate.
-pub const FASTEST: u16 = 240;
+/// The maximum rate, in pictures per second.
+pub const MAX_RATE: u16 = 240;
 
 impl Rate {
-    /// Creates a rate from 1 to [`FASTEST`]; nothing for others.
+    /// Creates a rate from 1 to [`MAX_RATE`]; `None` for other values.
     #[must_use]
     pub const fn new(per_second: u16) -> Option<Self> {
-        if per_second == 0 || per_second > FASTEST { None } else { Some(Self(per_second)) }
+        if per_second == 0 || per_second > MAX_RATE { None } else { Some(Self(per_second)) }
     }
 
-    /// Pictures per second.
+    /// Returns the number of pictures per second.
     #[must_use]
     pub const fn per_second(self) -> u16 {
         self.0

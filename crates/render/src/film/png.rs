@@ -1,11 +1,11 @@
-//! One picture as PNG.
+//! Encodes one picture as PNG.
 use crate::raster::Raster;
 use std::io::{self, Write};
 
 /// Writes a picture as the bytes of a PNG file, without transparency.
 ///
 /// # Errors
-/// When `out` can't be written.
+/// If `out` cannot be written.
 pub fn write_png(raster: &Raster, out: impl Write) -> io::Result<()> {
     let size = raster.size();
     let mut encoder = ::png::Encoder::new(out, size.width(), size.height());

@@ -1,22 +1,22 @@
-//! Detection polynomials on the step, with the intervals in which each is positive and those in which all are: the
-//! assignment's figure 2.
+//! Plots detection polynomials on the step, with the intervals in which each is positive and those in which all are,
+//! like the assignment's figure 2.
 use super::{
-    Embedding,
+    PlotTarget,
     sheet::{Anchor, Ink, Sheet, Tone, WIDTH},
 };
 use crate::number::short;
 use fosssim_num::{interval::Interval, polynomial::evaluate};
 
-/// A polynomial.
+/// A polynomial in the plot.
 #[derive(Debug, Clone)]
 pub struct PlottedPolynomial<'a> {
-    /// The polynomial's name, in a few words.
+    /// The polynomial's name, a few words long.
     pub name: String,
     /// The polynomial's coefficients, highest power first.
     pub coefficients: &'a [f64],
     /// The polynomial's real zeros.
     pub zeros: Vec<f64>,
-    /// The place where it is positive.
+    /// The intervals in which the polynomial is positive.
     pub positive: &'a [Interval],
 }
 
@@ -25,9 +25,9 @@ pub struct PlottedPolynomial<'a> {
 pub struct PolynomialPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// The polynomials; four styles distinguish them.
+    /// The polynomials, in one of four styles each.
     pub curves: &'a [PlottedPolynomial<'a>],
-    /// The intervals in which all are positive; `None` if they are not wanted, as for an expected and an actual
+    /// The intervals in which all are positive; `None` if they are not shown, as for an expected and an actual
     /// polynomial.
     pub common: Option<&'a [Interval]>,
     /// The time of impact.
@@ -47,7 +47,7 @@ const PIECE: usize = 8;
 impl PolynomialPlot<'_> {
     /// Renders the plot.
     #[must_use]
-    pub fn svg(&self, embedding: Embedding) -> String {
+    pub fn svg(&self, embedding: PlotTarget) -> String {
         let rows = self.curves.len() + usize::from(self.common.is_some());
         #[expect(clippy::cast_precision_loss, reason = "a handful")]
         let row_top = |row: usize| BOTTOM + 30.0 + ROW * row as f64;
@@ -88,7 +88,7 @@ impl PolynomialPlot<'_> {
         sheet.finish()
     }
 
-    /// Returns the plot in words, for readers who do not see it.
+    /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let mut words: Vec<String> = self
             .curves
@@ -109,15 +109,15 @@ fn x(time: f64) -> f64 {
     LEFT + time * (RIGHT - LEFT)
 }
 
-/// Draws a curve on `[0, 1]`, scaled to its largest modulus there: a positive factor moves no zero.
+/// Draws a curve on `[0, 1]`, scaled to its largest modulus; a positive factor moves no zero.
 fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
     let slopes = derivative(curve.coefficients);
     let most = values.iter().filter(|value| value.is_finite()).fold(0.0_f64, |most, value| most.max(value.abs()));
     let y = |value: f64| if most > 0.0 { MIDDLE - value / most * (MIDDLE - TOP - 8.0) } else { MIDDLE };
-    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and for a quintic off by
-    // less than a thousandth of a pixel.
+    // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and with an error below a
+    // thousandth of a pixel for a quintic.
     let mut path: Vec<[f64; 2]> = Vec::new();
     for k in (0..SAMPLES as usize).step_by(PIECE) {
         let (start, end) = (times[k], times[k + PIECE]);
@@ -155,7 +155,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Draws a row of bars: the parts of sets of time in `[0, 1]`; a single time is a diamond.
+/// Draws a row of bars for the parts of sets of time in `[0, 1]`; a single time is a diamond.
 fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
@@ -206,7 +206,7 @@ mod tests {
             },
         ];
         let plot = PolynomialPlot { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
-        let svg = plot.svg(Embedding::Alone);
+        let svg = plot.svg(PlotTarget::File);
         assert!(svg.contains(
             "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to \
              1; the time of impact is 0.5. Each curve is scaled to its own largest value on the step.</desc>"
@@ -219,7 +219,7 @@ mod tests {
         let curve = |coefficients, zeros| PlottedPolynomial { name: String::new(), coefficients, zeros, positive: &[] };
         let (nothing, endless) = (curve(&[], Vec::new()), curve(&[f64::INFINITY, 1.0], vec![f64::NAN]));
         let svg = PolynomialPlot { title: "", curves: &[nothing, endless], common: None, impact: Some(f64::INFINITY) }
-            .svg(Embedding::Inline);
+            .svg(PlotTarget::Page);
         assert!(!svg.contains("NaN") && !svg.contains("style"), "{svg}");
     }
 }

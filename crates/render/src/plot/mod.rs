@@ -1,8 +1,8 @@
-//! Plots as SVG: residuals over the steps, detection passes per step, detection polynomials on the step.
+//! Plots as SVG: residuals over the steps, detection passes per step, and detection polynomials on the step.
 //!
-//! Every plot has a title and a description in words, needs no script, and prints. Series differ by dash and marker,
-//! not by color alone; the colors follow the reader's light or dark scheme by CSS variables (`--plot-ink`, `--plot-1`
-//! and so on override them), with plain attributes as fallback where there is no CSS.
+//! Every plot has a title and a description, needs no script, and can be printed. Series differ by dash and marker as
+//! well as by color. The colors follow the reader's light or dark scheme by CSS variables (`--plot-ink`, `--plot-1` and
+//! so on override them), with plain attributes as a fallback without CSS.
 mod curves;
 mod passes;
 mod residuals;
@@ -13,14 +13,14 @@ pub use passes::PassPlot;
 pub use residuals::{ResidualPlot, Series};
 pub use sheet::STEPS_AXIS;
 
-/// The document that a plot is part of.
+/// The document for which a plot is rendered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Embedding {
-    /// A file of its own, which brings its style along.
-    Alone,
-    /// Into an HTML page that has [`STYLE`] in its own style sheet, once for all plots; so the page's policy need not
-    /// allow styles in the markup.
-    Inline,
+pub enum PlotTarget {
+    /// A separate file, which contains its style.
+    File,
+    /// An HTML page that has [`STYLE`] in its own style sheet, once for all plots, so the page's policy need not allow
+    /// styles in the markup.
+    Page,
 }
 
 /// The style sheet of all plots.

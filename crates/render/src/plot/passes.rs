@@ -1,6 +1,6 @@
-//! The number of detection passes of each step: as expected, and as logged.
+//! Plots the number of detection passes of each step, as expected and as logged.
 use super::{
-    Embedding,
+    PlotTarget,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone},
 };
 
@@ -9,9 +9,9 @@ use super::{
 pub struct PassPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// Detection passes of each step, from the first one on, as the reference makes them.
+    /// The reference's number of detection passes of each step, from the first step on.
     pub expected: &'a [u32],
-    /// The numbers of the trace. `None` if its polynomials do not fill a whole number of passes.
+    /// The trace's numbers of passes; `None` if the polynomials do not fill a whole number of passes.
     pub actual: &'a [Option<u32>],
 }
 
@@ -22,7 +22,7 @@ const HEIGHT: f64 = 192.0;
 impl PassPlot<'_> {
     /// Renders the plot.
     #[must_use]
-    pub fn svg(&self, embedding: Embedding) -> String {
+    pub fn svg(&self, embedding: PlotTarget) -> String {
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
         let steps = self.expected.len().max(self.actual.len());
@@ -42,7 +42,7 @@ impl PassPlot<'_> {
                 continue;
             }
             let x = columns.x(range.start);
-            // A step that differs represents its column.
+            // A step with a difference represents its column.
             let place = range.clone().find(|&place| self.differs(place));
             if place.is_some() {
                 differing.push(x);
@@ -73,7 +73,7 @@ impl PassPlot<'_> {
         }
     }
 
-    /// Returns the plot in words, for readers who do not see it.
+    /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let compared = self.expected.len().min(self.actual.len());
         let differing = (0..compared).filter(|&place| self.differs(place)).count();
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn differing_steps_are_marked_and_said() {
         let plot = PassPlot { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
-        let svg = plot.svg(Embedding::Inline);
+        let svg = plot.svg(PlotTarget::Page);
         let words = "2 of 4 steps have another number of detection passes; the first is step 3 with 3, expected 2";
         assert!(svg.contains(&format!("<desc>{words}</desc>")), "{svg}");
         assert_eq!(svg.matches("m0 -7l-7 7").count(), 2);
@@ -104,9 +104,9 @@ mod tests {
         let expected = vec![1; 100_000];
         let mut actual: Vec<_> = expected.iter().copied().map(Some).collect();
         actual[77_777] = Some(9);
-        let svg = PassPlot { title: "Passes", expected: &expected, actual: &actual }.svg(Embedding::Inline);
+        let svg = PassPlot { title: "Passes", expected: &expected, actual: &actual }.svg(PlotTarget::Page);
         assert_eq!(svg.matches("m0 -7l-7 7").count(), 1);
         assert!(svg.len() < 40_000);
-        let _ = PassPlot { title: "", expected: &[], actual: &[] }.svg(Embedding::Alone);
+        let _ = PassPlot { title: "", expected: &[], actual: &[] }.svg(PlotTarget::File);
     }
 }

@@ -1,14 +1,14 @@
-//! Residuals over the steps, on a logarithmic scale, with the tolerance as a line.
+//! Plots residuals over the steps, on a logarithmic scale, with the tolerance as a line.
 use super::{
-    Embedding,
+    PlotTarget,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone, WIDTH},
 };
 use crate::number::{decades, short};
 
-/// A residual of every step, from the first one on.
+/// A residual of every step, from the first step on.
 #[derive(Debug, Clone, Copy)]
 pub struct Series<'a> {
-    /// The series' name, in a word or two.
+    /// The name of the series, one or two words long.
     pub name: &'a str,
     /// One value per step.
     pub values: &'a [f64],
@@ -19,24 +19,24 @@ pub struct Series<'a> {
 pub struct ResidualPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// One to four residuals.
+    /// One to four series of residuals.
     pub series: &'a [Series<'a>],
-    /// The tolerance of these residuals.
+    /// The tolerance of the residuals.
     pub tolerance: f64,
-    /// A step to be pointed at, from 1, and why.
+    /// A step to be marked, from 1, with the reason.
     pub mark: Option<(u32, &'a str)>,
 }
 
 const TOP: f64 = 48.0;
 const BOTTOM: f64 = 220.0;
-/// Zeros are drawn below the scale, and values that are no numbers above it.
+/// The height of the lanes below the scale for zeros and above it for NaN.
 const LANE: f64 = 14.0;
 const HEIGHT: f64 = 284.0;
 
 impl ResidualPlot<'_> {
     /// Renders the plot.
     #[must_use]
-    pub fn svg(&self, embedding: Embedding) -> String {
+    pub fn svg(&self, embedding: PlotTarget) -> String {
         let steps = self.series.iter().map(|series| series.values.len()).max().unwrap_or(0);
         let mut sheet = Sheet::new(HEIGHT, self.title, &self.description(), embedding);
         sheet.text([LEFT, 18.0], Anchor::Start, Tone::Plain, self.title);
@@ -71,11 +71,11 @@ impl ResidualPlot<'_> {
         sheet.finish()
     }
 
-    /// Returns the plot in words, for readers who do not see it.
+    /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let of = |Series { name, values }: &Series<'_>| {
             let (place, value) = worst(values, 0..values.len())?;
-            // A value that is no number is not below the tolerance.
+            // NaN is not below the tolerance.
             let above = values.iter().filter(|&&value| !(value < self.tolerance)).count();
             let (largest, steps, tolerance) = (short(value), values.len(), short(self.tolerance));
             Some(format!(
@@ -87,7 +87,7 @@ impl ResidualPlot<'_> {
     }
 }
 
-/// Returns the worst value among some steps, and its place: NaN is worse than any number.
+/// Returns the worst value in a range, and its index; NaN is worse than any number.
 fn worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
     let places = range.start.min(values.len())..range.end.min(values.len());
@@ -96,7 +96,7 @@ fn worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> 
         .reduce(|worst, next| if rank(next.1) > rank(worst.1) { next } else { worst })
 }
 
-/// The logarithmic scale.
+/// The logarithmic scale of the plot.
 struct Scale {
     low: i32,
     high: i32,
@@ -143,7 +143,7 @@ mod tests {
     fn plot(values: &[f64]) -> String {
         let series = [Series { name: "position", values }];
         let plot = ResidualPlot { title: "Residuals", series: &series, tolerance: 1e-10, mark: Some((3, "first")) };
-        plot.svg(Embedding::Inline)
+        plot.svg(PlotTarget::Page)
     }
 
     #[test]

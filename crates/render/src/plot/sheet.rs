@@ -1,28 +1,28 @@
-//! A sheet of SVG that a plot is drawn on.
-use super::{Embedding, STYLE};
+//! A sheet of SVG on which a plot is drawn.
+use super::{PlotTarget, STYLE};
 use crate::{number::pixel, svg::escape};
 use std::fmt::Write;
 
-/// Widths of all sheets.
+/// The width of all sheets.
 pub const WIDTH: f64 = 640.0;
 
-/// The places of the first and the last step in plots over the steps.
+/// The positions of the first and the last step in plots over the steps.
 pub const LEFT: f64 = 64.0;
 pub const RIGHT: f64 = WIDTH - 16.0;
 
-/// The axis's ends, for others who draw on them.
+/// The ends of the axis, for other code that draws on it.
 pub const STEPS_AXIS: [f64; 2] = [LEFT, RIGHT];
 
-/// The ink of a mark: its class in the style sheet, and the color for readers without one.
+/// The ink of a mark: its class in the style sheet, and its color without one.
 #[derive(Debug, Clone, Copy)]
 pub enum Ink {
-    /// Axes.
+    /// The ink of axes.
     Axis,
-    /// Grid lines.
+    /// The ink of grid lines.
     Grid,
-    /// Wrong values, limits, impacts.
+    /// The ink of wrong values, limits and impacts.
     Bad,
-    /// Series, from 0; after four the styles begin anew.
+    /// The ink of a series, from 0; after four the styles repeat.
     Series(usize),
 }
 
@@ -55,7 +55,7 @@ impl Ink {
     }
 }
 
-/// The alignment of a text at its place.
+/// The alignment of a text at its position.
 #[derive(Debug, Clone, Copy)]
 pub enum Anchor {
     Start,
@@ -63,7 +63,7 @@ pub enum Anchor {
     End,
 }
 
-/// Which ink a text has.
+/// The color of a text.
 #[derive(Debug, Clone, Copy)]
 pub enum Tone {
     Plain,
@@ -71,20 +71,20 @@ pub enum Tone {
     Bad,
 }
 
-/// A sheet.
+/// A sheet of SVG with its content.
 #[derive(Debug)]
 pub struct Sheet {
     svg: String,
-    /// Whether the page's style sheet has all styles, so that the markup need not.
+    /// Whether the page's style sheet has all styles, so that the markup does not need them.
     is_styled: bool,
 }
 
 impl Sheet {
-    /// Creates a sheet of this height.
-    pub fn new(height: f64, title: &str, description: &str, embedding: Embedding) -> Self {
+    /// Creates a sheet with a given height.
+    pub fn new(height: f64, title: &str, description: &str, embedding: PlotTarget) -> Self {
         let (title, description) = (escape(title), escape(description));
         let (width, height) = (pixel(WIDTH), pixel(height));
-        let is_styled = embedding == Embedding::Inline;
+        let is_styled = embedding == PlotTarget::Page;
         let (space, font) = match is_styled {
             true => ("", ""),
             false => (" xmlns=\"http://www.w3.org/2000/svg\"", " font-family=\"sans-serif\" font-size=\"12\""),
@@ -94,7 +94,7 @@ impl Sheet {
             "<svg{space} class=\"fp\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" role=\"img\"{label}\
              {font}><title>{title}</title><desc>{description}</desc>\n"
         );
-        if embedding == Embedding::Alone {
+        if embedding == PlotTarget::File {
             let _ = writeln!(svg, "<style>{STYLE}</style>");
             let _ = writeln!(svg, "<rect class=\"pp\" width=\"{width}\" height=\"{height}\" fill=\"#fff\"/>");
         }
@@ -112,8 +112,8 @@ impl Sheet {
         if self.is_styled { String::new() } else { format!(" {attribute}=\"{value}\"") }
     }
 
-    /// Returns the attributes of a path that is drawn along.
-    fn along(&self, ink: Ink) -> String {
+    /// Returns the attributes of a stroked path.
+    fn stroke_attributes(&self, ink: Ink) -> String {
         let (class, color) = ink.class_and_color('s');
         format!(
             " class=\"{class}\"{}{}",
@@ -122,7 +122,7 @@ impl Sheet {
         )
     }
 
-    /// Returns the attributes of a shape that is filled.
+    /// Returns the attributes of a filled shape.
     fn fill_attributes(&self, ink: Ink) -> String {
         let (class, color) = ink.class_and_color('f');
         format!(" class=\"{class}\"{}", self.attribute_unless_styled("fill", color))
@@ -135,7 +135,7 @@ impl Sheet {
 
     /// Draws thin straight lines without dashes.
     pub fn rules(&mut self, ink: Ink, lines: &[([f64; 2], [f64; 2])]) {
-        let ink = self.along(ink);
+        let ink = self.stroke_attributes(ink);
         let piece = |&([x1, y1], [x2, y2]): &([f64; 2], [f64; 2])| {
             let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(pixel);
             format!("M{x1} {y1}L{x2} {y2}")
@@ -153,7 +153,7 @@ impl Sheet {
         self.draw_path(ink, width, &list);
     }
 
-    /// Draws a line of cubic curves: where it starts, and for each piece two control points and its end.
+    /// Draws a line of cubic curves: the start, and for each piece two control points and its end.
     pub fn curve(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
         let Some((&[x, y], rest)) = points.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
         let list = rest.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join(" ");
@@ -164,8 +164,8 @@ impl Sheet {
         let _ = writeln!(
             self.svg,
             "<path{}{}{}{} d=\"M{list}\"/>",
-            self.along(ink),
-            // The style sheet's lines are this wide.
+            self.stroke_attributes(ink),
+            // The lines of the style sheet have this width.
             if self.is_styled && width == 2.0 { String::new() } else { format!(" stroke-width=\"{}\"", pixel(width)) },
             self.attribute_unless_styled("stroke-linejoin", "round"),
             ink.dash()
@@ -184,7 +184,7 @@ impl Sheet {
         );
     }
 
-    /// Draws a marker; each series has a shape of its own: disc, square, triangle, diamond. Anything wrong has a cross.
+    /// Draws a marker. The series have different shapes: disc, square, triangle, diamond. A wrong value has a cross.
     pub fn marker(&mut self, ink: Ink, [x, y]: [f64; 2]) {
         let path = match ink {
             Ink::Series(number) => match number % 4 {
@@ -194,7 +194,7 @@ impl Sheet {
                 _ => format!("M{} {}l4 4l-4 4l-4 -4z", pixel(x), pixel(y - 4.0)),
             },
             Ink::Axis | Ink::Grid | Ink::Bad => {
-                let ink = self.along(ink);
+                let ink = self.stroke_attributes(ink);
                 let (x, y) = (pixel(x - 3.5), pixel(y - 3.5));
                 let _ = writeln!(self.svg, "<path{ink} stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>");
                 return;
@@ -206,7 +206,7 @@ impl Sheet {
 
     /// Draws a line of text; `[x, y]` is on its base line.
     pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
-        // A text starts at its place unless another alignment is set.
+        // A text starts at its position unless another alignment is set.
         let anchor = match anchor {
             Anchor::Start if self.is_styled => "",
             Anchor::Start => " text-anchor=\"start\"",
@@ -227,7 +227,7 @@ impl Sheet {
         );
     }
 
-    /// Draws the axis of the steps: numbers on one line, its name on another.
+    /// Draws the axis of the steps, with numbers on one line and its name on another.
     pub fn draw_steps(&mut self, columns: &Columns, numbers: f64, name: f64) {
         for tick in ticks(columns.steps) {
             self.text([columns.x(tick - 1), numbers], Anchor::Middle, Tone::Faint, &tick.to_string());
@@ -235,14 +235,14 @@ impl Sheet {
         self.text([RIGHT, name], Anchor::End, Tone::Faint, "step");
     }
 
-    /// Draws the line of a series, the `number`th of `most`, with its markers between the markers of the others.
+    /// Draws the line of series `number` of `most`, with its markers between those of the others.
     pub fn series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
         self.line(ink, 1.5, points);
         let every = (points.len() / 12).max(1);
         points.iter().skip(every * number / most).step_by(every).for_each(|&point| self.marker(ink, point));
     }
 
-    /// Draws a legend in a row: line, marker and name of each series.
+    /// Draws a legend in a row, with the line, marker and name of each series.
     pub fn legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
         let mut x = left;
         for &(ink, name) in names {
@@ -259,22 +259,22 @@ impl Sheet {
     }
 }
 
-/// Steps in columns: plots of long runs show the worst of the steps that share a column.
+/// The columns of the steps; plots of long runs show the worst of the steps that share a column.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns {
     pub steps: usize,
     pub columns: usize,
 }
 
-/// No plot has more columns.
-const MOST_COLUMNS: usize = 540;
+/// The maximum number of columns of a plot.
+const MAX_COLUMNS: usize = 540;
 
 impl Columns {
     pub fn for_steps(steps: usize) -> Self {
-        Self { steps, columns: steps.clamp(1, MOST_COLUMNS) }
+        Self { steps, columns: steps.clamp(1, MAX_COLUMNS) }
     }
 
-    /// Returns the places (from 0) of the steps in a column.
+    /// Returns the indices of the steps in a column.
     pub fn range(&self, column: usize) -> std::ops::Range<usize> {
         let at = |column: usize| {
             let place = column as u128 * self.steps as u128 / self.columns as u128;
@@ -283,7 +283,7 @@ impl Columns {
         at(column)..at(column + 1)
     }
 
-    /// Returns the middle of a step's place (from 0).
+    /// Returns the middle of a step's position, given its index.
     #[expect(clippy::cast_precision_loss, reason = "steps fit into 32 bits")]
     pub fn x(&self, place: usize) -> f64 {
         let steps = (self.steps.max(2) - 1) as f64;
@@ -291,7 +291,7 @@ impl Columns {
     }
 }
 
-/// Returns round steps for the labels of an axis that counts from 1 to `last`: at most six.
+/// Returns at most six round steps for the labels of an axis from 1 to `last`.
 pub fn ticks(last: usize) -> Vec<usize> {
     // 1, 2, 5, 10, 20, 50 and so on.
     let units = (0..18).flat_map(|power| [1, 2, 5].map(|digit| digit * 10_usize.pow(power)));

@@ -13,7 +13,7 @@ use fosssim_judge::{
 use fosssim_num::{first_time::positive_set, interval::Interval};
 use fosssim_render::{
     detection,
-    plot::{Embedding, PlottedPolynomial, PolynomialPlot},
+    plot::{PlotTarget, PlottedPolynomial, PolynomialPlot},
 };
 
 /// Renders a call under its name, folded unless it is open from the start.
@@ -60,7 +60,7 @@ impl CallContent<'_> {
 
     /// Draws the expected curves.
     fn draw_expected(&self, study: &Study) -> String {
-        detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), Embedding::Inline)
+        detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), PlotTarget::Page)
     }
 
     /// Renders the decision of the trace's own polynomials, and their curves, where one of them is wrong.
@@ -117,7 +117,7 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     let common = common_intervals(logged);
     let impact = common.iter().map(|set| set.lo).reduce(f64::min);
     let title = format!("Yours in step {step}: {}", PairWords(call.pair));
-    let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(Embedding::Inline);
+    let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(PlotTarget::Page);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
@@ -174,7 +174,7 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
         plot_polynomial(format!("{role}, yours"), logged, &own),
     ];
     let title = format!("Step {step}: {role}, expected and yours");
-    let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(Embedding::Inline);
+    let svg = PolynomialPlot { title: &title, curves: &curves, common: None, impact: None }.svg(PlotTarget::Page);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 

@@ -27,7 +27,7 @@ use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
     tolerances::{FAIR_UNITS, PARITY_MAXIMUM},
 };
-use fosssim_render::plot::{Embedding, PassPlot, ResidualPlot, STEPS_AXIS, Series};
+use fosssim_render::plot::{PassPlot, PlotTarget, ResidualPlot, STEPS_AXIS, Series};
 
 /// The greatest number of calls that are shown.
 const CALLS: usize = 6;
@@ -187,11 +187,11 @@ impl TraceContent<'_> {
         let mut out = String::new();
         // Flat curves show nothing.
         if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= tolerance)) {
-            out += &figure(&residuals.svg(Embedding::Inline));
+            out += &figure(&residuals.svg(PlotTarget::Page));
         }
         let differ = evidence.steps.iter().any(|step| step.actual_passes != Some(step.expected_passes));
         if evidence.layout.polynomials && differ {
-            out += &figure(&passes.svg(Embedding::Inline));
+            out += &figure(&passes.svg(PlotTarget::Page));
         }
         if out.is_empty() { out } else { format!("<div class=\"charts\">\n{out}</div>\n") }
     }

@@ -1,4 +1,4 @@
-//! The head of an attack's source: its promise, and its expected end.
+//! Parses the head of an attack's source: its promise, and its expected end.
 //!
 //! The first lines of the C file are comments of the form `// key: value`. `promise` and `expect` are required;
 //! `policy`, `wall` (milliseconds), `needs` and `leaves` are not.
@@ -11,22 +11,22 @@ use crate::{
     outcome::RunEnd,
 };
 
-/// The need of an attack, without which it proves nothing.
+/// A requirement of an attack, without which it proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct AttackNeed {
     pub(super) name: &'static str,
-    /// The walls that stop it, any of which suffices.
+    /// The layers that stop the attack; one of them is enough.
     walls: &'static [Layer],
-    /// Whether the processor meets it.
+    /// Whether the processor meets the requirement.
     by_processor: bool,
 }
 
 impl AttackNeed {
     const NEEDS: [Self; 7] = [
         Self::new("file rules", &[Layer::FileRules]),
-        // Files of the host are closed to programs, or out of sight.
+        // Files of the host are forbidden or hidden.
         Self::new("hidden files", &[Layer::FileRules, Layer::Namespaces]),
-        // Files of the host are in mounts of the run's own.
+        // Files of the host are in mounts of the run.
         Self::new("private mounts", &[Layer::Namespaces]),
         Self::new("private processes", &[Layer::Namespaces]),
         Self::new("signal scope", &[Layer::Scopes, Layer::OwnUser]),
@@ -38,7 +38,7 @@ impl AttackNeed {
         Self { name, walls, by_processor: false }
     }
 
-    /// Returns whether it is met where these walls are.
+    /// Returns whether a host with `layers` meets this requirement.
     pub(super) fn is_met(self, layers: &[LayerReport]) -> bool {
         self.by_processor || self.walls.iter().any(|wall| is_active(layers, *wall))
     }
@@ -57,7 +57,7 @@ impl ExpectedEnd {
         let detail = match ended {
             RunEnd::Exited(code) => code.to_string(),
             RunEnd::Signalled(signal) => signal.to_string(),
-            // The call's name comes first; if calls cannot be named, any violation is accepted.
+            // The call's name is reported first; if calls cannot be named, any violation is accepted.
             RunEnd::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
             RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
             _ => String::new(),
@@ -66,7 +66,7 @@ impl ExpectedEnd {
     }
 }
 
-/// One hostile program.
+/// A hostile program of the attack suite.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Attack {
     pub(super) name: String,
@@ -75,7 +75,7 @@ pub(super) struct Attack {
     pub(super) policy: Policy,
     pub(super) wall: Option<Duration>,
     pub(super) needs: Vec<AttackNeed>,
-    /// The expected `trace.bin`: `nothing`, `refused`, or this text.
+    /// The expected `trace.bin`: `nothing`, `refused`, or its text.
     pub(super) leaves: Option<String>,
 }
 
@@ -90,7 +90,7 @@ impl Attack {
         self.expected.iter().any(|expected| expected.kind == "exited")
     }
 
-    /// Reads the head of a source.
+    /// Parses the head of a source.
     pub(super) fn parse(name: &str, source: &str) -> Result<Self, String> {
         let mut attack = Self {
             name: name.into(),

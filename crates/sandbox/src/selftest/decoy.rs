@@ -1,6 +1,6 @@
-//! Decoys that a hostile program would like to reach: secrets, a scene, another submission, a process.
+//! Decoys that a hostile program tries to reach: secrets, a scene, another submission, a process.
 //!
-//! The state of all of it is recorded before and after a run, to the permission bits and the times of change.
+//! The state of all decoys is recorded before and after a run, including permission bits and times of change.
 
 use std::{
     collections::BTreeMap,
@@ -23,13 +23,13 @@ pub(super) struct Decoy {
     victim: Child,
 }
 
-/// The state of the decoys: facts and contents for every path.
+/// The state of the decoys: metadata and contents for every path.
 pub(super) struct State(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
 
 type DecoyFacts = [i64; 7];
 
 impl State {
-    /// Returns the first path that differs, if any.
+    /// Returns the first path that differs, if there is one.
     pub(super) fn difference(&self, after: &Self) -> Option<String> {
         let changed = self.0.iter().find(|(path, state)| after.0.get(*path) != Some(state)).map(|(path, _)| path);
         let added = || after.0.keys().find(|path| !self.0.contains_key(*path));
@@ -38,7 +38,7 @@ impl State {
 }
 
 impl Decoy {
-    /// Makes everything anew beneath `root`.
+    /// Creates a new set of decoys below `root`.
     pub(super) fn set_up(root: &Path) -> io::Result<Self> {
         if root.exists() {
             std::fs::remove_dir_all(root)?;
@@ -61,7 +61,7 @@ impl Decoy {
             std::fs::write(&path, text)?;
             std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode))?;
         }
-        // The umask must not be what protects the secrets: open every folder on the way to all users.
+        // The umask must not be the protection of the secrets, so every folder on the path is opened to all users.
         for folder in [root, &secrets, &secrets.join("inner"), &scenes, &neighbor] {
             std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))?;
         }
@@ -77,7 +77,7 @@ impl Decoy {
         Ok(own)
     }
 
-    /// Returns the arguments of the program: secrets, victim, scene, neighbor.
+    /// Returns the arguments of the program: secrets, victim, scene and neighbor.
     pub(super) fn arguments(&self) -> [OsString; 4] {
         [
             self.root.join("secrets").into(),
@@ -87,17 +87,17 @@ impl Decoy {
         ]
     }
 
-    /// Returns whether the text holds the secret.
-    pub(super) fn is_betrayed(&self, text: &[u8]) -> bool {
+    /// Returns whether the text contains the secret.
+    pub(super) fn contains_secret(&self, text: &[u8]) -> bool {
         text.windows(self.secret.len()).any(|window| window == self.secret.as_bytes())
     }
 
-    /// Returns whether the victim lives.
+    /// Returns whether the victim process is alive.
     pub(super) fn is_alive(&mut self) -> bool {
         matches!(self.victim.try_wait(), Ok(None))
     }
 
-    /// Returns the state of everything but the working folder.
+    /// Returns the state of everything except the working folder.
     pub(super) fn state(&self) -> io::Result<State> {
         let mut state = BTreeMap::new();
         for folder in ["secrets", "scenes", "neighbor"] {
@@ -114,7 +114,7 @@ impl Decoy {
 
 impl Drop for Decoy {
     fn drop(&mut self) {
-        // It may have been killed by the attack.
+        // The attack may have killed it.
         let _ = self.victim.kill();
         let _ = self.victim.wait();
     }
@@ -135,7 +135,7 @@ fn record(path: &Path, state: &mut BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>) -> 
         i64::from(metadata.uid()),
         i64::from(metadata.gid()),
         metadata.nlink().cast_signed(),
-        // The time of change moves with every change of owner, mode, name or contents.
+        // The time of change is updated with every change of owner, mode, name or contents.
         metadata.ctime(),
         metadata.ctime_nsec(),
         metadata.ino().cast_signed(),
@@ -162,7 +162,7 @@ mod tests {
         std::fs::write(folder.path().join("run/neighbor/planted"), "x").unwrap();
         assert!(before.difference(&decoy.state().unwrap()).is_some());
         let secret = std::fs::read(&reference).unwrap();
-        assert!(decoy.is_betrayed(&[b"it is ", &secret[..]].concat()) && !decoy.is_betrayed(b"it is"));
+        assert!(decoy.contains_secret(&[b"it is ", &secret[..]].concat()) && !decoy.contains_secret(b"it is"));
         assert!(decoy.is_alive());
         decoy.victim.kill().unwrap();
         decoy.victim.wait().unwrap();

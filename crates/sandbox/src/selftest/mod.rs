@@ -1,9 +1,8 @@
-//! Runs the attack suite on this machine: one hostile program for every promise that the sandbox makes.
+//! Runs the attack suite on this machine, with one hostile program for each promise of the sandbox.
 //!
-//! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox next to a
-//! decoy: secrets, a scene, another submission and a process that a hostile program would like to reach. A promise
-//! holds when the program ended as expected, the decoys are exactly as before, nothing secret was printed, and no
-//! process is left. Outside the sandbox the programs do nothing.
+//! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox next to
+//! decoys: secrets, a scene, another submission and a process. A promise holds if the program ends as expected, the
+//! decoys are unchanged, no secret is printed, and no process is left. Outside the sandbox the programs do nothing.
 
 mod attack;
 mod decoy;
@@ -28,53 +27,53 @@ use super::{
     job::{Job, Limits},
     layers::{Layer, is_active},
     outcome::{RunEnd, RunOutcome},
-    running::LeftFolder,
+    running_program::LeftFolder,
     supervisor::processes,
     sys,
 };
 
 static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
 
-/// The environment variable without which the hostile programs do not start.
+/// The environment variable that permits the hostile programs to start.
 const PERMIT: &str = "FOSSSIM_ATTACK";
-/// The variables that show a hostile program the place of the grader's own program, and the grader's group.
+/// The variables that give a hostile program the path of the grader's program, and the grader's group.
 const GRADER: &str = "FOSSSIM_GRADER";
 const GROUP: &str = "FOSSSIM_GRADER_GROUP";
-/// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have ended it.
+/// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have ended the attack.
 const REFUSED: RunEnd = RunEnd::Exited(77);
-/// Attacks are built without optimization, which would remove stores and loops that look useless.
+/// Attacks are built without optimization, which would remove stores and loops that seem useless.
 const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
-/// The trace's file.
+/// The file name of the trace.
 const TRACE: &str = "trace.bin";
-/// The largest trace that is collected.
-const LONGEST_TRACE: u64 = 1 << 20;
+/// The maximum size of a collected trace, in bytes.
+const MAX_TRACE_BYTES: u64 = 1 << 20;
 
-/// Whether a promise holds on this machine.
+/// The state of a promise on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PromiseState {
-    /// The attack failed and left no mark.
+    /// The attack failed and left no trace of itself.
     Held,
-    /// The sandbox broke the promise; the text describes how.
+    /// The sandbox broke the promise. Holds a description.
     Broken(String),
-    /// The promise could not be tried here; the text gives the reason.
+    /// The promise could not be tested here. Holds the reason.
     NotTested(String),
 }
 
-/// One line of the promise table.
+/// One row of the promise table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Promise {
-    /// The attack's name, which is its file's.
+    /// The name of the attack and of its file.
     pub attack: String,
-    /// The promise, one sentence.
+    /// The promise, as one sentence.
     pub promise: String,
-    /// Whether it holds.
+    /// The state of the promise.
     pub state: PromiseState,
 }
 
-/// The promises of the sandbox, and how many of them hold on this machine.
+/// The promises of the sandbox, with their states on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PromiseTable {
-    /// All promises, by the attack's name.
+    /// All promises, ordered by the attack's name.
     pub promises: Vec<Promise>,
 }
 
@@ -91,14 +90,14 @@ impl PromiseTable {
     }
 }
 
-/// Builds every attack with the C compiler `cc` and runs it with `backend`, several at a time. `report` is called for
-/// each as it ends. Everything is written beneath `folder`, which must exist; built programs stay there for the next
-/// time.
+/// Builds every attack with the C compiler `cc` and runs it with `backend`, several at a time. `report` is called after
+/// each attack. All files are written below `folder`, which must exist; built programs stay there for the next
+/// self-test.
 ///
 /// # Errors
 ///
-/// [`SandboxError::Missing`] when the backend does not filter system calls: the attacks are never run without walls.
-/// Also when `folder` cannot be used. A promise that does not hold is no error.
+/// [`SandboxError::Missing`] if the backend does not filter system calls, because the attacks are never run without
+/// layers. Also if `folder` cannot be used. A broken promise is not an error.
 pub fn run(
     backend: &Backend,
     cc: &Path,
@@ -108,11 +107,11 @@ pub fn run(
     run_some(backend, cc, folder, |_| true, report)
 }
 
-/// Runs the self-test as [`run`] does, for the attacks whose names are `chosen`.
+/// Runs the self-test like [`run`], for the attacks named in `chosen`.
 ///
 /// # Errors
 ///
-/// As [`run`].
+/// The errors of [`run`].
 pub fn run_some(
     backend: &Backend,
     cc: &Path,
@@ -121,7 +120,7 @@ pub fn run_some(
     mut report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
     if !is_active(backend.layers(), Layer::CallFilter) {
-        return Err(SandboxError::Missing { missing: "the attacks run inside the sandbox only".into() });
+        return Err(SandboxError::Missing { missing: "the attacks run only inside the sandbox".into() });
     }
     let folder_error = |source: std::io::Error| SandboxError::Folder { folder: folder.display().to_string(), source };
     let folder = folder.canonicalize().map_err(folder_error)?;
@@ -157,7 +156,7 @@ pub fn run_some(
     Ok(PromiseTable { promises })
 }
 
-/// Returns the attacks of the binary, in the order of their names.
+/// Returns the attacks that are embedded in the binary, ordered by name.
 fn attacks() -> Vec<Attack> {
     let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|extension| extension == "c"));
     let mut attacks: Vec<Attack> = sources
@@ -167,7 +166,7 @@ fn attacks() -> Vec<Attack> {
     attacks
 }
 
-/// The place and the tools of a selftest.
+/// The folders and tools of a self-test.
 struct Place<'a> {
     backend: &'a Backend,
     cc: &'a Path,
@@ -177,7 +176,7 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Tries one attack; both answers are states of its promise.
+    /// Tries one attack. Both `Ok` and `Err` are states of its promise.
     fn try_attack(&self, attack: &Attack) -> Result<PromiseState, PromiseState> {
         if let Some(need) = attack.needs.iter().find(|need| !need.is_met(self.backend.layers())) {
             return Ok(PromiseState::NotTested(format!("this machine lacks: {}", need.name)));
@@ -187,7 +186,7 @@ impl Place<'_> {
         let fault = |error: &dyn std::fmt::Display| PromiseState::NotTested(format!("the test itself failed: {error}"));
         let mut decoy =
             Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
-        // A program of its own for every run, so that survivors are recognized by it.
+        // A separate copy of the program for every run, so that surviving processes can be recognized.
         let program = decoy.bring(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
@@ -200,12 +199,12 @@ impl Place<'_> {
             .limits(limits(attack));
         let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
         if attack.expects_exit() && running.is_in_memory() {
-            // Such runs share a supervisor: what this one leaves in it exists for the next.
+            // Such runs share a supervisor, so things left in it would be visible in the next run.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
             }
-            if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
+            if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
                 return Err(broken("it printed a secret in a first run".into()));
             }
             running = self.backend.start(&job).map_err(|e| fault(&e))?;
@@ -215,19 +214,18 @@ impl Place<'_> {
         if let Some(left) = survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
         }
-        // In a container, the engine's own filter may be the first to deny a forbidden call, and then no call is
-        // reported.
+        // In a container, the engine's filter may be the first to deny a forbidden call; then the call is not reported.
         let refused = outcome.ended == REFUSED && attack.expects_violation() && is_filtered();
         if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
         }
-        if decoy.is_betrayed(&outcome.stdout.bytes) || decoy.is_betrayed(&outcome.stderr.bytes) {
+        if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
             return Err(broken("it printed a secret".into()));
         }
         if !decoy.is_alive() {
             return Err(broken("it killed another process".into()));
         }
-        let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read any more: {e}")))?;
+        let after = decoy.state().map_err(|e| broken(format!("the decoys cannot be read: {e}")))?;
         if let Some(difference) = before.difference(&after) {
             return Err(broken(format!("it changed the host: {difference}")));
         }
@@ -236,7 +234,7 @@ impl Place<'_> {
         Ok(PromiseState::Held)
     }
 
-    /// Returns the built program; built anew only when a source or the compiler's name has changed.
+    /// Returns the built program. It is rebuilt only if a source or the compiler's name has changed.
     fn build(&self, attack: &Attack) -> Result<PathBuf, String> {
         let source = SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
         let header = SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
@@ -254,7 +252,7 @@ impl Place<'_> {
         let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
         put(&path, source.contents()).map_err(said)?;
-        // Built under another name, so that a half-built program is never taken for a complete one.
+        // Built under another name, so that an incomplete program is never used.
         let fresh = self.programs.join(format!("{}-{}", attack.name, unique()));
         let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
@@ -266,27 +264,27 @@ impl Place<'_> {
     }
 }
 
-/// Returns a unique suffix: other self-tests may work in the same folder at the same time.
+/// Returns a unique suffix, because other self-tests may use the same folder at the same time.
 fn unique() -> String {
     static COUNT: AtomicUsize = AtomicUsize::new(0);
     format!("{}.{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Writes a file whole or not at all, because others may be reading it.
+/// Writes a file atomically, because others may be reading it.
 fn put(path: &Path, contents: &[u8]) -> std::io::Result<()> {
     let fresh = path.with_extension(unique());
     std::fs::write(&fresh, contents)?;
     std::fs::rename(&fresh, path)
 }
 
-/// Returns small limits, so that the suite is short and harmless even if a wall is missing.
+/// Returns small limits, so that the suite is fast, and harmless even if a layer is missing.
 fn limits(attack: &Attack) -> Limits {
     Limits {
         cpu: Duration::from_millis(300),
         wall: attack.wall.unwrap_or(Duration::from_secs(20)),
         memory: 64 << 20,
         output_bytes: 64 << 10,
-        trace_bytes: LONGEST_TRACE,
+        trace_bytes: MAX_TRACE_BYTES,
         folder_bytes: 4 << 20,
         folder_files: 100,
         processes: 16,
@@ -300,13 +298,13 @@ fn environment() -> [(&'static str, String); 3] {
     [(PERMIT, "1".into()), (GRADER, grader.display().to_string()), (GROUP, sys::group().to_string())]
 }
 
-/// Returns whether a system call filter surrounds this very process: a container's.
+/// Returns whether a system call filter, such as a container's, already applies to this process.
 fn is_filtered() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     status.lines().any(|line| line.strip_prefix("Seccomp:").is_some_and(|mode| mode.trim() == "2"))
 }
 
-/// Returns a process that still runs the program, in whichever of its threads.
+/// Returns a process that still runs the program, in any of its threads.
 fn survivor(program: &Path) -> Option<i32> {
     processes::all().find(|pid| {
         processes::threads(*pid)
@@ -314,7 +312,7 @@ fn survivor(program: &Path) -> Option<i32> {
     })
 }
 
-/// Returns the end of the program's output, for a broken promise.
+/// Returns the end of the program's output, for the report about a broken promise.
 fn last_output(outcome: &RunOutcome) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);
@@ -326,9 +324,9 @@ fn last_output(outcome: &RunOutcome) -> String {
     }
 }
 
-/// Checks that the folder holds the trace that it should hold.
+/// Checks that the folder contains the expected trace.
 fn check_left_trace(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
-    let collected = work.regular_file(TRACE, LONGEST_TRACE).and_then(|(mut file, _)| {
+    let collected = work.regular_file(TRACE, MAX_TRACE_BYTES).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);
         read.map(|_| bytes).map_err(|source| CollectError::System { name: TRACE.into(), source })

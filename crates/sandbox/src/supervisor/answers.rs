@@ -1,5 +1,4 @@
-//! Calls that the supervisor answers in the kernel's place, because the kernel's own answer would reveal other runs, or
-//! let them interfere.
+//! Answers calls instead of the kernel, whose answer would reveal other runs, or let them interfere.
 
 use std::{
     fs::File,
@@ -10,19 +9,18 @@ use std::{
 
 use crate::sys::{self, CallAnswer, PendingCall};
 
-/// Returns the memory of the thread that waits for an answer. Where other walls keep us from it, the kernel answers
-/// itself.
+/// Returns the memory of the thread that waits for an answer. If other layers block access to it, the kernel answers
+/// the call.
 fn open_memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
 }
 
-/// Threads that wait for a word that other processes might share, as the C library waits for the end of a thread.
+/// Threads that wait for a futex word that other processes might share, as the C library waits for the end of a thread.
 ///
-/// The kernel finds such words by the file in whose pages they are, and wakes the threads that wait there when a thread
-/// ends that names the same word: in a library's pages that would be another run's. Therefore no thread waits in the
-/// kernel. The supervisor checks the word after pauses that double, until it has changed or the limit of time has
-/// passed.
+/// The kernel identifies shared words by their position in a file. A word in a library's pages would be shared with
+/// other runs, whose threads could wake the waiting one. Therefore no thread waits in the kernel. The supervisor checks
+/// the word after doubling pauses, until the word has changed or the time limit has passed.
 #[derive(Debug, Default)]
 pub(super) struct SharedWaits(Vec<SharedWait>);
 
@@ -31,7 +29,7 @@ struct SharedWait {
     id: u64,
     memory: File,
     word: u64,
-    /// The word's value as long as the wait continues.
+    /// The value of the word while the wait continues.
     value: u32,
     limit: Option<Instant>,
     pause: Duration,
@@ -41,9 +39,9 @@ struct SharedWait {
 
 impl SharedWaits {
     const SHORTEST: Duration = Duration::from_micros(50);
-    const LONGEST: Duration = Duration::from_millis(2);
+    const MAX_PAUSE: Duration = Duration::from_millis(2);
 
-    /// Adds a waiting thread; returns the answer if no wait is needed.
+    /// Adds a waiting thread. Returns the answer if no wait is needed.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
         let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::GoOn) };
         let [word, _, value, ..] = announced.arguments;
@@ -68,19 +66,19 @@ impl SharedWaits {
         self.0.iter().map(|wait| wait.due).min()
     }
 
-    /// Answers threads whose word has changed or whose time is over.
+    /// Answers threads whose word has changed or whose time limit has passed.
     pub(super) fn answer(&mut self, listener: BorrowedFd<'_>, now: Instant) {
         self.0.retain_mut(|wait| {
             if wait.due > now {
                 return true;
             }
-            wait.pause = (2 * wait.pause).min(Self::LONGEST);
+            wait.pause = (2 * wait.pause).min(Self::MAX_PAUSE);
             wait.due = now + wait.pause;
             match wait.answer(now) {
                 // A signal may have ended the wait.
                 None => sys::is_waiting(listener, wait.id),
                 Some(answer) => {
-                    // A thread that has ended needs no answer.
+                    // Answering fails if the thread has ended, which does not matter.
                     let _ = sys::answer(listener, wait.id, answer);
                     false
                 }
@@ -101,7 +99,7 @@ impl SharedWait {
     }
 }
 
-/// Returns the time until which the thread waits: from now on (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
+/// Returns the time until which the thread waits: relative to now (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
 fn limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
     let [_, operation, _, place, ..] = announced.arguments;
     if place == 0 {
@@ -118,7 +116,7 @@ fn limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<
         libc::FUTEX_WAIT => Duration::ZERO,
         _ => sys::time_by(operation & libc::FUTEX_CLOCK_REALTIME != 0),
     };
-    // A time beyond all clocks is none.
+    // A time beyond the clock's range means no limit.
     Ok(now.checked_add(Duration::new(seconds, nanoseconds).saturating_sub(passed)))
 }
 
@@ -126,7 +124,7 @@ fn limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<
 mod tests {
     use super::*;
 
-    /// Returns a wait of this very process for the word, with the limit at this place.
+    /// Returns a wait of this process for `word`, with the address of `limit`.
     fn announced(operation: i32, word: &u32, value: u32, limit: Option<&[i64; 2]>) -> PendingCall {
         let limit = limit.map_or(0, |limit| (&raw const *limit) as u64);
         let arguments = [(&raw const *word) as u64, operation as u64, value.into(), limit, 0, 0];

@@ -1,13 +1,13 @@
-//! The system calls by name, in the groups that the filter treats alike.
+//! The system calls by name, in the groups of the filter.
 //!
-//! A call in none of the groups does not exist for the program (`ENOSYS`); programs treat it like a call that is newer
-//! than the kernel. A real submission of the course uses 21 calls. POSIX timers (`timer_create`) are in none, because
-//! all programs of a user share their number; `setitimer`, `alarm` and `timerfd_create` take nothing from others.
+//! A call in no group does not exist for the program (`ENOSYS`); programs treat it like a call that is newer than the
+//! kernel. A real submission of the course uses 21 calls. POSIX timers (`timer_create`) are in no group, because all
+//! programs of a user share their number; `setitimer`, `alarm` and `timerfd_create` do not affect others.
 
 /// A call's name and number.
 pub(super) type Call = (&'static str, i64);
 
-/// A list of calls. Those behind `old` are older names, or dangers, that only x86_64 has.
+/// A list of calls. Those after `old` are older names, or dangers, that only x86_64 has.
 macro_rules! calls {
     ($($name:ident)* $(; old: $($old:ident)*)?) => {
         &[
@@ -17,8 +17,8 @@ macro_rules! calls {
     };
 }
 
-/// Calls that every program needs: its own memory, files, time, threads and signals. File calls are bounded by
-/// Landlock, amounts by the resource limits.
+/// Calls that every program needs for its own memory, files, time, threads and signals. Landlock limits file calls; the
+/// resource limits limit amounts.
 pub(super) const ALLOWED: &[Call] = calls![
     SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
     SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2
@@ -43,28 +43,29 @@ pub(super) const ALLOWED: &[Call] = calls![
     SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
 ];
 
-/// Starting a process by the older names; a submission has no business with them, compilers do.
+/// Calls that start a process by the older names. Compilers need them, submissions do not.
 pub(super) const FORKING: &[Call] = calls![; old: SYS_fork SYS_vfork];
 
-/// Links and special files: the folder's rules forbid most of them anyway. Answered with `EPERM`.
+/// Calls that create links and special files, most of which the folder's rules also forbid. They are answered with
+/// `EPERM`.
 pub(super) const LINKING: &[Call] = calls![
     SYS_linkat SYS_symlinkat SYS_mknodat
     ; old:
     SYS_link SYS_symlink SYS_mknod
 ];
 
-/// Permission bits by name or descriptor. Landlock does not know them, so that a program under the grader's own user
-/// could change the grader's files.
+/// Calls that change permission bits by name or descriptor. Landlock does not restrict them, so a program under the
+/// grader's user could change the grader's files.
 pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
 
-/// Times of files, which Landlock does not know either.
+/// Calls that change times of files, which Landlock does not restrict either.
 pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
-/// The calls under older names, which never take an open file.
+/// Calls that change times of files under older names. They never take an open file.
 pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
-/// Calls that libraries try and can do without. They are denied with `EPERM` or `EACCES` rather than taken for an
-/// attack. The C library connects to the name service by a socket, for example. Counters of free blocks are among them,
-/// because they reveal what others wrote.
+/// Calls that libraries try but do not need. They are denied with `EPERM` or `EACCES` and do not count as an attack.
+/// For example, the C library connects to the name service by a socket. Counters of free blocks are included, because
+/// they reveal what others wrote.
 pub(super) const REFUSED: &[Call] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr SYS_removexattr
     SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
@@ -76,7 +77,8 @@ pub(super) const REFUSED: &[Call] = calls![
     SYS_chown SYS_lchown
 ];
 
-/// Dangerous calls of the kernel. No submission makes them by accident: the program is stopped and the call named.
+/// Dangerous calls of the kernel. No submission makes them by accident, so the program is stopped and the call is
+/// named.
 pub(super) const FORBIDDEN: &[Call] = calls![
     SYS_ptrace SYS_process_vm_readv SYS_process_vm_writev SYS_kcmp SYS_pidfd_getfd SYS_unshare SYS_setns SYS_mount
     SYS_umount2 SYS_pivot_root SYS_chroot SYS_open_tree SYS_move_mount SYS_fsopen SYS_fsconfig SYS_fsmount SYS_fspick
@@ -90,19 +92,19 @@ pub(super) const FORBIDDEN: &[Call] = calls![
     SYS_iopl SYS_ioperm SYS_modify_ldt SYS_kexec_file_load
 ];
 
-/// Locks of whole files. They need no right to write, so that they are for build tools in their own folder only.
+/// Calls that lock whole files. They need no right to write, so only build tools may use them, in their own folder.
 pub(super) const LOCKS: &[Call] = calls![SYS_flock];
 
-/// Calls to become another user. The kernel denies this without privileges, which no program has; `make` sets its own
+/// Calls that change the user. The kernel denies them without privileges, which no program has; `make` sets its own
 /// user again before every command.
 pub(super) const IDENTITY: &[Call] =
     calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
 
-/// Every group: what exists at all.
+/// All groups, which together hold all existing calls.
 pub(super) const GROUPS: [&[Call]; 10] =
     [ALLOWED, FORKING, LINKING, MODES, TIMES, TIMES_BY_NAME, LOCKS, IDENTITY, REFUSED, FORBIDDEN];
 
-/// Returns the usual name of a call.
+/// Returns the common name of a call.
 pub(super) fn name(number: i64) -> String {
     let known = GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
     known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())

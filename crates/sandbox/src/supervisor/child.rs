@@ -1,7 +1,7 @@
-//! The child's way from the fork to the program: it sets up every wall, in the order in which that is still possible.
+//! The child's steps from the fork to the program. It sets up every layer, in the order in which that is possible.
 //!
-//! Nothing here returns to the supervisor's code. A step that fails reports to the supervisor through the status
-//! socket, which closes by itself when the program has started.
+//! No function returns to the supervisor's code. A step that fails reports to the supervisor through the status socket,
+//! which closes by itself when the program has started.
 
 use std::{
     ffi::CString,
@@ -19,14 +19,14 @@ use std::{
 use landlock::RulesetCreated;
 use seccompiler::BpfProgram;
 
-use super::{filter, filter::Purpose, processes, view, volatile, walls};
+use super::{filter, filter::Purpose, memory_folder, processes, view, walls};
 use crate::{
     mounts,
     sys::{self, Access, Resource},
     wire::{self, EXECUTE, Failure, RawBytes, RunOrder, stage},
 };
 
-/// The flag that a seccomp listener follows.
+/// The byte that announces a seccomp listener.
 pub(super) const LISTENER: u8 = b'L';
 
 /// The data that the child needs, prepared by the supervisor.
@@ -34,16 +34,17 @@ pub(super) struct ChildPlan {
     pub(super) order: Rc<RunOrder>,
     pub(super) supervisor: u32,
     pub(super) folder: OwnedFd,
-    /// The program or script, opened while we could still reach it, for a user who cannot.
+    /// The program or script, opened while it is accessible, for a user who cannot open it.
     pub(super) opened: Option<OpenedFile>,
-    /// The program to execute, open under a number beyond the limit of descriptors, where execution is not announced.
+    /// The program as an open file with a number beyond the limit of descriptors, from which it is executed if
+    /// executions are not announced.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
-    /// The filters, if they are compiled.
+    /// The compiled filters, if they exist.
     pub(super) filters: Option<Filters>,
-    /// Signals that are ignored and must not be.
+    /// Ignored signals that must be reset.
     pub(super) ignored: Rc<[i32]>,
-    /// The ways into the run's control group.
+    /// The files through which the child enters the run's control group.
     pub(super) groups: Vec<File>,
     pub(super) user: Option<u32>,
     pub(super) input: OwnedFd,
@@ -52,9 +53,9 @@ pub(super) struct ChildPlan {
     pub(super) status: UnixStream,
 }
 
-/// Becomes the program.
+/// Sets up the layers and executes the program in this process.
 pub(super) fn become_program(mut plan: ChildPlan) -> ! {
-    // Written as a file, because the filter knows no socket calls.
+    // Written as a file, because the filter allows no socket calls.
     let mut status = match plan.status.as_fd().try_clone_to_owned() {
         Ok(status) => File::from(status),
         Err(_) => sys::exit_now(125),
@@ -63,14 +64,14 @@ pub(super) fn become_program(mut plan: ChildPlan) -> ! {
         Err(failure) => failure,
         Ok((arguments, environment)) => Failure::new(EXECUTE, &execute(&plan, &arguments, &environment)),
     };
-    // The supervisor waits for this message or for the end of the program; without readers it has no receiver.
+    // The supervisor waits for this message or for the end of the program; without readers the message is lost.
     let _ = serde_json::to_writer(&mut status, &failure).map(|()| status.flush());
     sys::exit_now(125)
 }
 
 type Strings = Vec<CString>;
 
-/// Puts up every wall; the answer is the program's arguments and environment.
+/// Sets up every layer. Returns the program's arguments and environment.
 fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::new_session().map_err(stage("start a session"))?;
     for group in &mut plan.groups {
@@ -81,16 +82,16 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::set_file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
     if plan.order.walls.namespaces && !plan.order.tools {
-        // The current folder moves, too.
+        // The current folder changes as well.
         view::leave_processes(&plan.order)?;
     }
-    // To be the first that the kernel ends when memory runs out. Some containers forbid it.
+    // Makes this the first process that the kernel kills when memory runs out. Some containers forbid the setting.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
     set_limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
     if let Some(user) = plan.user {
         sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
     }
-    // Changing the user resets the parent-death signal, so it is set afterwards; a parent that died before is noticed
+    // A change of user resets the parent-death signal, so it is set afterwards; a parent that died earlier is detected
     // here.
     sys::die_with_parent().map_err(stage("bind the program's life to the supervisor's"))?;
     if std::os::unix::process::parent_id() != plan.supervisor {
@@ -104,7 +105,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     for raw in &plan.order.readable {
         if !c_string(raw).is_ok_and(|path| sys::accessible(&path, Access::READ_OK)) {
             let stage =
-                format!("let the program read {}, which every user must be able to reach", wire::path(raw).display());
+                format!("open {} for the program (every user must be able to read it)", wire::path(raw).display());
             return Err(Failure { stage, errno: libc::EACCES });
         }
     }
@@ -123,19 +124,19 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     Ok(strings)
 }
 
-/// Sets the resource limits; they are the second line behind the supervisor's own watch, except for file sizes.
+/// Sets the resource limits. Except for file sizes they are a second line behind the supervisor's checks.
 fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
-    // The default of Linux, so that a deep recursion ends alike on every grading host.
+    // The default of Linux, so that a deep recursion ends in the same way on every grading host.
     const STACK: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
-    // The run's own user has no other processes but in another container that hands out the same numbers.
+    // The run's own user has other processes only in another container that uses the same numbers.
     const SPARE_FOR_OTHERS: u64 = 128;
     const PENDING_SIGNALS: u64 = 1024;
-    // The address sanitizer reserves 20 TiB in addition to the program's own space, others more.
+    // The address sanitizer reserves 20 TiB in addition to the program's own space; other sanitizers reserve more.
     const SANITIZERS_SPACE: u64 = 64 << 40;
-    // One byte, not none: the kernel pipes the dumps of programs with a limit of 0 to a handler, if the host has one.
+    // One byte instead of zero: with a limit of 0 the kernel pipes core dumps to a handler, if the host has one.
     sys::limit(Resource::Core, 1)?;
     let limits = &order.limits;
     sys::limit(Resource::Fsize, order.file_bytes())?;
@@ -146,15 +147,15 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::limit(Resource::Memlock, 64 << 10)?;
     sys::limit(Resource::Msgqueue, 0)?;
     sys::limit(Resource::Rtprio, 0)?;
-    // The count is per user, like the count of processes.
+    // The kernel counts pending signals per user, like processes.
     sys::limit(Resource::Sigpending, PENDING_SIGNALS)?;
-    // Address space is not memory: libraries reserve more than they touch. What is touched is watched.
+    // Address space is not memory: libraries reserve more than they use. The memory in use is checked separately.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
     sys::limit(Resource::As, if order.sanitizers { space.max(SANITIZERS_SPACE) } else { space })?;
-    // The kernel counts for a user, or for a user namespace: where both are shared with other runs, the limit is only
-    // against bombs, because the supervisor counts the run's own.
+    // The kernel counts per user or user namespace. If these are shared with other runs, the limit only stops bombs,
+    // because the supervisor counts the run's own processes.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
-    // Processes of a bomb take memory and time until the supervisor has counted them; threads hardly do.
+    // Processes of a bomb take memory and time until the supervisor has counted them; threads take little.
     let most_runs = if order.tools { 8 } else { 64 };
     let processes = match own_user || order.walls.namespaces {
         true => processes + SPARE_FOR_OTHERS,
@@ -163,23 +164,24 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::limit(Resource::Nproc, processes)
 }
 
-/// Filters that were compiled before there was a child, with their purpose.
+/// Filters that were compiled before the child existed, with their purpose.
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
-/// Returns the purpose of the filters of a child with this number.
+/// Returns the purpose of the filters of a child with process number `number`.
 pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
     let walls = order.walls;
     Purpose {
         tools: order.tools,
         announce: walls.notify,
-        // Tools signal their own children, which Landlock's scope or the own user distinguish from others.
+        // Tools signal their own children, which Landlock's scope or the separate user distinguish from other
+        // processes.
         own_process: (!order.tools || !(walls.scopes || walls.own_user)).then_some(number),
         entrance,
         own_user,
     }
 }
 
-/// Installs the filters and hands the listener to the supervisor.
+/// Installs the filters and sends the listener to the supervisor.
 fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     let walls = plan.order.walls;
     let entrance = plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64);
@@ -197,10 +199,10 @@ fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     Ok(())
 }
 
-/// Executes the program; returns only the error.
+/// Executes the program; returns only if there is an error.
 ///
-/// A file that was just written can be busy for a moment: another thread of the grader may have forked while the file
-/// was open for writing, and its child holds a copy of the descriptor until it executes. So this is tried again.
+/// A newly written file can be busy for a moment: another thread of the grader may have forked while the file was open
+/// for writing, and its child holds a copy of the descriptor until it executes. The execution is therefore retried.
 fn execute(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
     const TRIES: u32 = 25;
     const PAUSE: Duration = Duration::from_millis(20);
@@ -214,7 +216,7 @@ fn execute(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> 
     execute_once(plan, arguments, environment)
 }
 
-/// Executes the program by its path, or by the open file when the path is closed to the sandbox's user.
+/// Executes the program by its path, or by the open file if the sandbox's user cannot reach the path.
 fn execute_once(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
     let path = plan.order.interpreter.as_ref().unwrap_or(&plan.order.program);
     let Ok(path) = c_string(path) else { return io::Error::from_raw_os_error(libc::EINVAL) };
@@ -242,17 +244,17 @@ fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
     order.words.iter().chain([&program]).chain(&order.arguments).map(c_string).collect()
 }
 
-/// Returns the script, if its interpreter has to read it by a descriptor, because its path is closed to the run's user.
+/// Returns the script if its interpreter must read it by a descriptor, because the run's user cannot reach its path.
 fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
     let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, Access::READ_OK));
     (!readable).then_some(opened)
 }
 
-/// Returns the few variables that every program gets, then the job's.
+/// Returns the few variables that every program gets, followed by the job's.
 fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
-    // A folder whose parents are closed to the sandbox's user is reached as the current folder.
+    // A folder whose parents are closed to the sandbox's user is used as the current folder.
     let home =
         if sys::accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) { order.folder.clone() } else { b".".to_vec() };
     let mut variables: Vec<(RawBytes, RawBytes)> = vec![
@@ -283,9 +285,9 @@ pub(super) struct OpenedFile {
 }
 
 impl OpenedFile {
-    /// Opens the program: the file itself, or a copy in memory when its permission bits are for the owner only or
-    /// nothing may be executed in its folder. A program that its user may not read would be closed to the supervisor's
-    /// checks as well. A copy that takes more than `most` bytes of memory fails as if the kernel had no memory.
+    /// Opens the program: the file itself, or a copy in memory if its permission bits are for the owner only or its
+    /// folder forbids execution. A program that its user may not read would be closed to the supervisor's checks as
+    /// well. A copy of more than `most` bytes fails as if the kernel had no memory.
     pub(super) fn new(path: &Path, for_another: bool, most: u64) -> Result<Self, Failure> {
         let open = || -> io::Result<Self> {
             const READ_AND_EXECUTE: u32 = 0o005;
@@ -303,17 +305,17 @@ impl OpenedFile {
         })
     }
 
-    /// Returns a copy of the program in memory, in which holes stay holes.
+    /// Returns a copy of the program in memory that keeps the holes.
     fn copy(program: &File, most: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
-        volatile::copy_blocks(program, &mut copy, most)?;
+        memory_folder::copy_blocks(program, &mut copy, most)?;
         copy.set_permissions(Permissions::from_mode(0o555))?;
-        // A file that is open for writing cannot be executed: open it again for reading only.
+        // A file that is open for writing cannot be executed, so it is opened again for reading only.
         let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
         Ok(Self { file: again.into(), copied: true })
     }
 
-    /// Returns the file under a number from `least` on.
+    /// Returns the file with a descriptor number of at least `least`.
     pub(super) fn under_number(&self, least: u32) -> io::Result<OwnedFd> {
         sys::duplicate_from(self.file.as_fd(), least)
     }

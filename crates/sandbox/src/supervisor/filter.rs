@@ -1,11 +1,10 @@
-//! The seccomp filters: an allow list, denials with an error number, and calls that end the program.
+//! The seccomp filters: a list of allowed calls, denials with an error number, and calls that end the program.
 //!
-//! Each answer has a filter of its own, which the compiler makes. The strictest answer counts, in the order kill,
-//! error, announce, allow, and of equal ones the last filter's. Forbidden calls are announced to the supervisor, which
-//! names the call and kills; that filter comes first. Where the kernel cannot announce, the call kills by `SIGSYS`. The
-//! list of calls that exist comes last, because it also removes the calls that install filters. Every filter ends
-//! programs that use another architecture's calls (32-bit `int 0x80`); x32 numbers are on no list, and therefore do not
-//! exist.
+//! Each answer has a separate filter. The strictest answer counts, in the order kill, error, announce, allow; of equal
+//! answers, that of the last filter counts. Forbidden calls are announced to the supervisor, which names the call and
+//! kills; that filter comes first. If the kernel cannot announce, the call kills with `SIGSYS`. The list of existing
+//! calls is installed last, because it removes the calls that install filters. Every filter ends programs that use
+//! another architecture's calls (32-bit `int 0x80`); x32 numbers are in no group and therefore do not exist.
 
 use std::{collections::BTreeMap, io};
 
@@ -15,12 +14,12 @@ use seccompiler::{
 
 use super::calls::{self, Call};
 
-/// Stands for "announce" while a filter is compiled, because the compiler does not know that action.
+/// Represents "announce" while a filter is compiled, because the compiler does not support that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
 const RETURN_CONSTANT: u16 = 0x06;
 const ACTION_ANNOUNCE: u32 = 0x7fc0_0000;
 
-/// Flags of `clone` that make namespaces.
+/// The flags of `clone` that create namespaces.
 pub(super) const NAMESPACE_FLAGS: [u64; 8] = [
     libc::CLONE_NEWNS as u64,
     libc::CLONE_NEWCGROUP as u64,
@@ -32,8 +31,8 @@ pub(super) const NAMESPACE_FLAGS: [u64; 8] = [
     0x80, // CLONE_NEWTIME
 ];
 
-/// Commands for descriptors that affect only their holder. Left out are those that make the kernel signal others or
-/// make them wait (owner, signal, lease, notice), and the size of pipes, which shrinks when a user has many.
+/// Commands for descriptors that affect only their holder. Commands that make the kernel signal others or make them
+/// wait (owner, signal, lease, notice) are missing, and so is the size of pipes, which shrinks if a user has many.
 const HARMLESS_COMMANDS: [u64; 8] = [
     libc::F_DUPFD as u64,
     libc::F_GETFD as u64,
@@ -55,7 +54,7 @@ pub(super) const LOCK_COMMANDS: [u64; 6] = [
     libc::F_OFD_SETLKW as u64,
 ];
 
-/// Questions about a process whose number is the first argument.
+/// Queries about a process whose number is the first argument.
 const QUESTIONS: [i64; 6] = [
     libc::SYS_getsid,
     libc::SYS_getpgid,
@@ -65,14 +64,13 @@ const QUESTIONS: [i64; 6] = [
     libc::SYS_get_robust_list,
 ];
 
-/// Advice about memory that affects only the caller, by number, because not every C library knows all: usual, random
-/// and sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards. Left out
-/// is advice that makes pages of files or of memory leave, age, merge or move, which others would notice or no counter
-/// shows.
+/// Advice about memory that affects only the caller, by number, because some C libraries lack names: usual, random and
+/// sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards. Advice that
+/// evicts, ages, merges or moves pages is missing, because others would notice it or no counter shows it.
 const HARMLESS_ADVICE: [u64; 20] = [0, 1, 2, 3, 4, 8, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19, 22, 23, 102, 103];
 
-/// Waits for a word that may be shared, which the C library needs to wait for the end of a thread: with the clocks that
-/// a limit of time may be by.
+/// Waits for a word that may be shared, with the allowed clocks for a time limit. The C library needs them to wait for
+/// the end of a thread.
 const SHARED_WAITS: [u64; 4] = [
     libc::FUTEX_WAIT as u64,
     libc::FUTEX_WAIT_BITSET as u64,
@@ -80,10 +78,10 @@ const SHARED_WAITS: [u64; 4] = [
     (libc::FUTEX_WAIT_BITSET | libc::FUTEX_CLOCK_REALTIME) as u64,
 ];
 
-/// Wakes for such words: the supervisor sees by itself that a word has changed, so that these calls need no effect.
+/// Wakes for shared words. The supervisor itself notices that a word has changed, so the calls need no effect.
 const SHARED_WAKES: [u64; 2] = [libc::FUTEX_WAKE as u64, libc::FUTEX_WAKE_BITSET as u64];
 
-/// Requests about terminals and descriptors that the C library and compilers make of any file.
+/// Requests about terminals and descriptors that the C library and compilers make for any file.
 const HARMLESS_REQUESTS: [u64; 8] = [
     libc::TCGETS,
     libc::TIOCGWINSZ,
@@ -95,7 +93,7 @@ const HARMLESS_REQUESTS: [u64; 8] = [
     0x802c_542a, // TCGETS2, which newer C libraries ask instead
 ];
 
-/// `prctl` options that name a thread, query something, or make the process stricter.
+/// Options of `prctl` that name a thread, query something, or restrict the process.
 const HARMLESS_OPTIONS: [i32; 10] = [
     libc::PR_SET_NAME,
     libc::PR_GET_NAME,
@@ -112,21 +110,22 @@ const HARMLESS_OPTIONS: [i32; 10] = [
 /// The purpose of a set of filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Purpose {
-    /// Compilers may start processes, execute programs and make links within their folder.
+    /// Whether the program is a build tool, which may start processes, execute programs and create links within its
+    /// folder.
     pub(super) tools: bool,
-    /// Whether calls are announced to the supervisor rather than deadly by themselves.
+    /// Whether forbidden calls are announced to the supervisor instead of killing the program.
     pub(super) announce: bool,
-    /// The process that the filter will guard, the only one that it may signal; `None` when its signals are
-    /// confined by other walls.
+    /// The process that the filter applies to, the only one that it may signal; `None` if other layers restrict its
+    /// signals.
     pub(super) own_process: Option<i32>,
-    /// The descriptor by which the program itself is executed, where calls are not announced. It is beyond the limit of
-    /// descriptors, so that after that no file can ever be open under this number.
+    /// The descriptor from which the program itself is executed, if calls are not announced. Its number is beyond the
+    /// limit of descriptors, so no other file can ever have it.
     pub(super) entrance: Option<u64>,
-    /// Whether the program runs as a user of its own, whose permissions keep it from changing files of others.
+    /// Whether the program has its own user, whose permissions protect the files of others.
     pub(super) own_user: bool,
 }
 
-/// Returns the filters in the order of installation; the first is the one that announces.
+/// Returns the filters in the order of installation; the first one announces.
 pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     let strictest = if purpose.announce { announce() } else { SeccompAction::KillProcess };
     let mut filters = vec![compile(forbidden(purpose)?, strictest, SeccompAction::Allow)?];
@@ -138,7 +137,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     for (errno, rules) in refusals(purpose)? {
         filters.push(compile(rules, SeccompAction::Errno(errno as u32), SeccompAction::Allow)?);
     }
-    // A call that is in some group exists, and the filters before decide. All else does not.
+    // A call in any group exists, and earlier filters decide about it. Other calls do not exist.
     let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
     filters.push(compile(known, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?);
     Ok(filters)
@@ -151,9 +150,9 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         refusals.entry(errno).or_default().insert(call, rules);
     };
     let own_files = purpose.tools && purpose.own_user;
-    // The supervisor decides about these in a build tool's stead.
+    // The supervisor decides about these calls for a build tool.
     let asked = purpose.tools && purpose.announce;
-    for (group, is_refused) in [
+    for (group, is_rejected) in [
         (calls::REFUSED, true),
         (calls::LINKING, !purpose.tools),
         (calls::IDENTITY, !purpose.tools),
@@ -161,17 +160,18 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         (calls::MODES, !own_files && !asked),
         (calls::LOCKS, !asked),
     ] {
-        for (_, call) in group.iter().filter(|_| is_refused) {
+        for (_, call) in group.iter().filter(|_| is_rejected) {
             let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
             refuse(if network { libc::EACCES } else { libc::EPERM }, *call, Vec::new());
         }
     }
     if !own_files {
-        // A build tool may set the times of a file that it has open (no path: a null pointer), which is what most do.
+        // A build tool may set the times of a file that it has open (a null path), which is what most tools do.
         let named = is_not_null(1)?;
         refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
     }
-    // Words in a file's pages are the same words for every process that maps it: a library's would wake other runs.
+    // Words in a file's pages are shared by every process that maps the file, so a library's words would wake other
+    // runs.
     let private = libc::FUTEX_PRIVATE_FLAG as u64;
     let harmless = if purpose.announce { [&SHARED_WAITS[..], &SHARED_WAKES].concat() } else { SHARED_WAITS.into() };
     let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &harmless));
@@ -182,7 +182,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     refuse(libc::EINVAL, libc::SYS_madvise, vec![all_differ(2, &HARMLESS_ADVICE)?]);
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
     refuse(libc::EINVAL, libc::SYS_prctl, vec![all_differ(0, &HARMLESS_OPTIONS.map(|option| option as u64))?]);
-    // Shared memory outside of files, and huge pages, are resident for no process: no counter would show them.
+    // Shared memory outside files, and huge pages, are resident for no process, so no counter would show them.
     let unseen = (libc::MAP_ANONYMOUS | libc::MAP_SHARED) as u64;
     let huge = libc::MAP_HUGETLB as u64;
     refuse(libc::EPERM, libc::SYS_mmap, vec![mask_rule(3, unseen, unseen)?, mask_rule(3, huge, huge)?]);
@@ -191,12 +191,12 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, condition(2, SeccompCmpOp::MaskedEq(flag), flag)?];
     let commands = if asked { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
     refuse(libc::EPERM, libc::SYS_fcntl, vec![all_differ(1, &commands)?, rule(asynchronous)?]);
-    // Opening a file for reading only can empty it, and older Landlocks do not notice.
+    // Opening a file for reading can truncate it, which older versions of Landlock do not notice.
     let (mask, emptied) = ((libc::O_ACCMODE | libc::O_TRUNC) as u64, libc::O_TRUNC as u64);
     refuse(libc::EPERM, libc::SYS_openat, vec![mask_rule(2, mask, emptied)?]);
     #[cfg(target_arch = "x86_64")]
     refuse(libc::EPERM, libc::SYS_open, vec![mask_rule(1, mask, emptied)?]);
-    // Without descriptors in common, open files could be hidden from the supervisor.
+    // Without shared descriptors, open files could be hidden from the supervisor.
     refuse(libc::EINVAL, libc::SYS_close_range, vec![all_differ(2, &[0, u64::from(libc::CLOSE_RANGE_CLOEXEC)])?]);
     for (errno, call, rules) in on_others(purpose)? {
         refuse(errno, call, rules);
@@ -204,7 +204,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     Ok(refusals)
 }
 
-/// Returns denials of calls that name a process, unless it is the caller: error number, call, rules.
+/// Returns denials of calls that name a process other than the caller: error number, call, rules.
 fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
     let own = purpose.own_process.map(|pid| pid as u64);
     let mut refusals = vec![
@@ -218,7 +218,7 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
     }
     if let Some(pid) = own.filter(|_| !purpose.tools) {
         for call in QUESTIONS {
-            // A thread of its own has a number, too: the C library does without this answer if there is no such call.
+            // A thread also has a number. The C library works without this answer if the call does not exist.
             let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
             refusals.push((errno, call, vec![all_differ(0, &[0, pid])?]));
         }
@@ -229,7 +229,7 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
 
 type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 
-/// Returns which calls end the program, or are the supervisor's to decide.
+/// Returns the calls that end the program, or that the supervisor decides about.
 fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN);
@@ -237,8 +237,8 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     if !purpose.tools {
         rules.extend(always(calls::FORKING));
         clone.push(mask_rule(0, libc::CLONE_THREAD as u64, 0)?);
-        // The supervisor lets the first execution through, which starts the program itself. Without a listener, only
-        // the execution by that descriptor passes the filter.
+        // The supervisor allows the first execution, which starts the program itself. Without a listener, only
+        // execution from the reserved descriptor passes the filter.
         rules.insert(libc::SYS_execve, Vec::new());
         let entrance = purpose.entrance.map(|number| all_differ(0, &[number]));
         rules.insert(libc::SYS_execveat, entrance.into_iter().collect::<io::Result<_>>()?);
@@ -247,34 +247,34 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     clone.push(mask_rule(0, parted, libc::CLONE_THREAD as u64)?);
     rules.insert(libc::SYS_clone, clone);
     if purpose.announce {
-        // The supervisor answers itself that a thread may have ended, without a wait that others could end.
+        // The supervisor answers that a thread may have ended, without a wait that others could end.
         rules.insert(libc::SYS_futex, match_each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {
-        // The supervisor checks the place of the file.
+        // The supervisor checks the location of the file.
         rules.extend(always(calls::LOCKS));
         rules.insert(libc::SYS_fcntl, match_each(1, &LOCK_COMMANDS)?);
     }
     if purpose.tools && purpose.announce && !purpose.own_user {
-        // The supervisor changes the mode itself, in the working folder only.
+        // The supervisor itself changes the mode, only in the working folder.
         rules.extend(always(calls::MODES));
     }
     Ok(rules)
 }
 
-/// Stands for the announcement as long as a filter is compiled.
+/// Represents the announcement while a filter is compiled.
 fn announce() -> SeccompAction {
     SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into())
 }
 
-/// Returns the filter with this answer to the calls that match, and this one to all others.
+/// Returns the filter with the answer `matched` to the calls that match, and `otherwise` to all others.
 fn compile(rules: CallRules, matched: SeccompAction, otherwise: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
     let filter = SeccompFilter::new(rules, otherwise, matched, machine);
     filter.and_then(BpfProgram::try_from).map_err(io::Error::other)
 }
 
-/// Matches when the argument is none of the values.
+/// Matches if the argument is none of the values.
 fn all_differ(argument: u8, values: &[u64]) -> io::Result<SeccompRule> {
     rule(differ(argument, values).collect::<io::Result<_>>()?)
 }
@@ -288,13 +288,13 @@ fn match_each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
     values.iter().map(|value| rule(vec![condition(argument, SeccompCmpOp::Eq, *value)?])).collect()
 }
 
-/// Matches when the argument is no null pointer.
+/// Matches if the argument is not a null pointer.
 fn is_not_null(argument: u8) -> io::Result<SeccompRule> {
     let given = SeccompCondition::new(argument, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
     rule(vec![given.map_err(io::Error::other)?])
 }
 
-/// Matches when the bits of the mask have this value.
+/// Matches if the bits of the mask have the given value.
 fn mask_rule(argument: u8, mask: u64, value: u64) -> io::Result<SeccompRule> {
     rule(vec![condition(argument, SeccompCmpOp::MaskedEq(mask), value)?])
 }
@@ -303,7 +303,7 @@ fn rule(conditions: Vec<SeccompCondition>) -> io::Result<SeccompRule> {
     SeccompRule::new(conditions).map_err(io::Error::other)
 }
 
-/// Compares the low 32 bits: these arguments are `int`s, and the kernel ignores the higher bits.
+/// Compares the low 32 bits, because the arguments are `int`s and the kernel ignores the higher bits.
 fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<SeccompCondition> {
     let value = value & u64::from(u32::MAX);
     SeccompCondition::new(argument, SeccompCmpArgLen::Dword, operator, value).map_err(io::Error::other)

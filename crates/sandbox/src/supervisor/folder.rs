@@ -1,7 +1,7 @@
-//! The working folder as the supervisor sees it: its size and its owner.
+//! The supervisor's view of the working folder: its size and its owner.
 //!
 //! The program changes the folder while the supervisor reads it. Folders are therefore opened by descriptor, without
-//! following links, and an entry that is removed meanwhile is no error.
+//! following links, and an entry that disappears is not an error.
 
 use std::{
     ffi::CString,
@@ -23,25 +23,25 @@ use crate::{
 };
 
 /// The depth beyond which no user nests folders by accident.
-const DEEPEST: u32 = 32;
-/// The size of the blocks in which `stat` counts.
+const MAX_DEPTH: u32 = 32;
+/// The size of the blocks in which `stat` counts, in bytes.
 pub(super) const BLOCK: u64 = 512;
 
-/// The contents of a folder, counted.
+/// The total size and number of the files in a folder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct FolderUsage {
-    /// Bytes on disk.
+    /// The number of bytes on disk.
     pub(super) bytes: u64,
-    /// Files and folders.
+    /// The number of files and folders.
     pub(super) files: u64,
-    /// Folders among them, if they were counted.
+    /// The number of folders, if they were counted.
     pub(super) folders: u64,
-    /// Whether part of it could not be counted: too deep, closed to us, or beyond the limits.
+    /// Whether a part could not be counted because it is too deep, closed, or beyond the limits.
     pub(super) over: bool,
 }
 
 impl FolderUsage {
-    /// Returns the larger numbers of both.
+    /// Returns the larger value of each number.
     pub(super) fn at_least(self, other: Self) -> Self {
         Self {
             bytes: self.bytes.max(other.bytes),
@@ -52,15 +52,15 @@ impl FolderUsage {
     }
 }
 
-/// Returns the contents of the file system whose root is `folder`, by the kernel's own count: removed files that are in
-/// use as well.
+/// Returns the contents of the file system whose root is `folder`, by the kernel's own count, which includes removed
+/// files in use.
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
     let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
-    // The root itself is one.
+    // The root itself counts as one.
     FolderUsage { bytes, files: files.saturating_sub(1), ..FolderUsage::default() }
 }
 
-/// Counts the folder's contents and stops as soon as a limit is passed.
+/// Counts the folder's contents, and stops as soon as a limit is exceeded.
 pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> FolderUsage {
     let mut contents = FolderUsage::default();
     let whole = walk(folder, 0, &mut |_, metadata| {
@@ -73,13 +73,13 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
     contents
 }
 
-/// Gives the folder and all in it to a user and group: folders, and files that have no second name (which might be
-/// elsewhere). Only called while no process of the program is alive.
+/// Changes the owner of the folder and its contents to a user and group: folders, and files that have no second name
+/// (which might be elsewhere). Must be called only when no process of the program is alive.
 pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     walk(folder, 0, &mut |path, metadata| {
         let kind = metadata.file_type();
         if kind.is_dir() || (kind.is_file() && metadata.nlink() == 1) {
-            // An entry that cannot be given stays as it is; the program then cannot change it.
+            // An entry whose owner cannot be changed stays unchanged; the program then cannot change it.
             let _ = std::os::unix::fs::lchown(path, Some(user), Some(group));
         }
         true
@@ -87,9 +87,9 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
     sys::change_owner(folder, user, group)
 }
 
-/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth: entries deeper
-/// than [`DEEPEST`] are moved up into `folder` itself, because the process that removes it later would run out of
-/// descriptors. Returns whether no entry was that deep. Only called while no process of the program is alive.
+/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth. Entries deeper
+/// than [`MAX_DEPTH`] are moved up into `folder`, because the process that later removes it would run out of descriptors.
+/// Returns whether no entry was that deep. Must be called only when no process of the program is alive.
 pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();
     open_level(folder, folder, 0, &mut moved);
@@ -103,7 +103,7 @@ pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     moved.is_empty()
 }
 
-/// Opens the folders beneath one at `depth` and notes the new names of those that were too deep.
+/// Opens the folders below a folder at `depth`, and records the new names of those that were too deep.
 fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
     let Ok(entries) = std::fs::read_dir(path_of_open(folder)) else { return };
     for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
@@ -114,11 +114,11 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
             continue;
         };
         if mode & 0o700 != 0o700 {
-            // A folder that stays closed is reported as over the limit by the measurement that follows.
+            // The next measurement reports a folder that stays closed as over the limit.
             let _ = std::fs::set_permissions(path_of_open(opened.as_fd()), Permissions::from_mode(mode | 0o700));
         }
         drop(opened);
-        if depth < DEEPEST {
+        if depth < MAX_DEPTH {
             if let Ok(inner) = sys::open_beneath(folder, &name, OFlags::RDONLY | OFlags::DIRECTORY) {
                 open_level(root, inner.as_fd(), depth + 1, moved);
             }
@@ -130,7 +130,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
     }
 }
 
-/// Returns a name that the folder does not hold.
+/// Returns a name that is not used in the folder.
 fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
     const TRIES: usize = 100_000;
     let names = (from..from + TRIES).map(|number| format!(".too-deep-{number}"));
@@ -142,8 +142,8 @@ fn path_of_open(folder: BorrowedFd<'_>) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
 }
 
-/// Visits everything beneath the folder until the visitor stops it. Returns whether everything was visited. Paths lead
-/// through `/proc/self/fd` and stay valid as long as the visit.
+/// Visits everything below the folder until the visitor stops it. Returns whether everything was visited. Paths lead
+/// through `/proc/self/fd` and are valid during the visit.
 fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metadata) -> bool) -> bool {
     let Ok(entries) = std::fs::read_dir(format!("/proc/self/fd/{}", folder.as_raw_fd())) else { return false };
     for entry in entries {
@@ -162,7 +162,7 @@ fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metada
             Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::ENOTDIR | libc::ELOOP)) => continue,
             Err(_) => return false,
         };
-        if depth == DEEPEST || !walk(inner.as_fd(), depth + 1, visit) {
+        if depth == MAX_DEPTH || !walk(inner.as_fd(), depth + 1, visit) {
             return false;
         }
     }
@@ -202,7 +202,7 @@ mod tests {
     #[test]
     fn closed_folders_are_opened_at_any_depth_and_can_then_be_removed() {
         let folder = tempfile::tempdir().unwrap();
-        // From the inside out, so that an ordinary user can do it, too.
+        // From the inside out, so that an ordinary user can do it as well.
         let deep = folder.path().join("d/".repeat(300));
         std::fs::create_dir_all(&deep).unwrap();
         let mut closed = deep.components().as_path();

@@ -1,11 +1,11 @@
-//! A control group of its own for one run, if the grader may make one.
+//! A control group for one run, if the grader may create one.
 //!
-//! The kernel then counts memory and threads without gaps between two checks, ends a run that takes too much, and ends
-//! all processes in it with one command. Only what is ours already is used: a group beneath the one that this process
-//! is in, or beneath one of that group's parents; no controller is switched on and no other process is moved. The
-//! supervisor's own counts stay decisive, so that a verdict does not depend on the groups of a host.
+//! The kernel then counts memory and threads continuously, ends a run that takes too much, and ends all its processes
+//! with one command. The group is created below the group of this process, or below one of that group's parents. No
+//! controller is enabled and no other process is moved. The supervisor's own counts stay decisive, so that a verdict
+//! does not depend on the groups of a host.
 //!
-//! Version 2 comes first. If it has no controller for memory, version 1 limits memory, but cannot end a run.
+//! Version 2 is preferred. If it has no controller for memory, version 1 limits memory, but cannot end a run.
 
 use std::{
     ffi::CStr,
@@ -21,42 +21,42 @@ use crate::{
     wire::RunOrder,
 };
 
-/// The beginning of our groups' names.
+/// The prefix of the groups' names.
 const PREFIX: &str = "fosssim-oracle-";
-/// Pipe buffers, page tables and the kernel's other books count as well.
+/// Additional memory for pipe buffers, page tables and other data of the kernel, which count as well.
 const SPARE_MEMORY: u64 = 64 << 20;
 const SPARE_PROCESSES: u32 = 16;
 
-/// The purpose of a hierarchy of groups.
+/// The kind of a hierarchy of groups.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// A group of version 2.
+    /// The single hierarchy of version 2.
     Unified,
-    /// The memory of version 1.
+    /// The memory hierarchy of version 1.
     Memory,
 }
 
-/// A group. Dropped where the host's files are visible, it is removed once no process is in it.
+/// A control group. If the host's files are visible when it is dropped, it is removed once it has no processes.
 pub(super) struct Group {
     parts: Vec<Part>,
 }
 
-/// The group in one hierarchy. Its folder is held locked as long as it is in use.
+/// The group in one hierarchy. Its folder is locked while it is in use.
 struct Part {
     kind: Kind,
     path: PathBuf,
     folder: File,
-    /// The quantities whose controllers are there, so that the kernel limits them.
+    /// The quantities with an available controller, which the kernel limits.
     limits: Vec<&'static str>,
 }
 
 impl Group {
-    /// Makes a group with the limits of the order, if there is a place for one.
+    /// Creates a group with the limits of the order, if there is a place for one.
     ///
     /// # Errors
     ///
-    /// No hierarchy with a place for which we have permission, or only one of version 2 on a kernel before 5.14, which
-    /// cannot end a group.
+    /// If no hierarchy has a permitted place, or only version 2 has one on a kernel before 5.14, which cannot end a
+    /// group.
     pub(super) fn make(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
@@ -93,7 +93,7 @@ impl Group {
         self.parts.iter().map(Part::entrance).collect()
     }
 
-    /// Returns whether all processes in it can be ended with one command.
+    /// Returns whether all processes of the group can be ended with one command.
     pub(super) fn can_kill(&self) -> bool {
         self.unified_part().is_some()
     }
@@ -121,8 +121,8 @@ impl Group {
     }
 
     fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
-        // Files count here, above all the working folder's, and so do buffers of others; they do not count for the
-        // program's own limit.
+        // Files count here, mainly the working folder's, and so do buffers of others; neither counts for the program's
+        // own limit.
         let limits = &order.limits;
         let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY);
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);
@@ -152,11 +152,11 @@ impl Group {
     }
 }
 
-/// A quantity that the kernel can limit for a group, and the file without which it does not.
+/// A quantity that the kernel can limit for a group, and the file that sets the limit.
 type HeldLimit = (&'static str, &'static CStr);
 
 impl Kind {
-    /// Returns the limits of such a group, if their controllers are there.
+    /// Returns the limits of a control group of this version whose controllers are available.
     fn limits(self) -> &'static [HeldLimit] {
         match self {
             Self::Unified => &[("memory", c"memory.max"), ("threads and processes", c"pids.max")],
@@ -166,14 +166,14 @@ impl Kind {
 }
 
 impl Part {
-    /// Makes a group in the first place that has all limits, or else in the first that can be had.
+    /// Creates a group in the first place that has all limits, otherwise in the first possible place.
     fn make(kind: Kind, places: &[PathBuf]) -> io::Result<Option<Self>> {
         let (mut weaker, mut problem) = (None, None);
         for place in places {
             sweep(place);
             match Self::make_in(kind, place) {
                 Ok(part) if part.limits.len() == kind.limits().len() => return Ok(Some(part)),
-                // In version 1 there is nothing to be had without the limit.
+                // A group of version 1 is useless without the limit.
                 Ok(part) if weaker.is_none() && kind == Kind::Unified => weaker = Some(part),
                 Ok(_) => {}
                 Err(error) => problem = Some(error),
@@ -190,7 +190,7 @@ impl Part {
         let mut tries = 0;
         loop {
             match Self::try_in(kind, place) {
-                // Somebody who cleans up may have taken it before it was locked.
+                // A cleanup may have removed it before it was locked.
                 Err(error) if error.kind() == io::ErrorKind::NotFound && tries < TRIES && place.is_dir() => tries += 1,
                 done => return done,
             }
@@ -200,7 +200,7 @@ impl Part {
     fn try_in(kind: Kind, place: &Path) -> io::Result<Self> {
         let (path, folder) = claim(place)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
-        // Only a group that can be entered and, in version 2, ended is of use.
+        // A group is useful only if it can be entered and, in version 2, ended.
         if kind == Kind::Unified {
             part.open(c"cgroup.kill", OFlags::WRONLY)?;
         }
@@ -233,7 +233,7 @@ impl Drop for Part {
     fn drop(&mut self) {
         const ROUNDS: u32 = 200;
         for _ in 0..ROUNDS {
-            // Processes leave it a moment after they were reaped. A group that stays is swept away by the next run.
+            // Processes leave the group a moment after they were reaped. The next run removes a group that remains.
             match std::fs::remove_dir(&self.path) {
                 Err(error) if error.raw_os_error() == Some(libc::EBUSY) => {
                     std::thread::sleep(Duration::from_millis(1));
@@ -244,48 +244,48 @@ impl Drop for Part {
     }
 }
 
-/// Returns the number behind the key in a file of lines `key number`.
+/// Returns the number after `key` in a file of lines `key number`.
 fn value_of(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
 
-/// Makes a folder and locks it, so that no cleanup removes it.
+/// Creates a folder and locks it, so that no cleanup removes it.
 ///
 /// # Errors
 ///
-/// `NotFound` when it was removed before it was locked.
+/// `NotFound` if it was removed before it was locked.
 fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
-    // In process namespaces, others may have our number.
+    // In process namespaces, others may have the same process number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
     let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
     std::fs::create_dir(&path)?;
     let folder = File::open(&path)?;
     folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
-    // A process that removes a group holds the lock meanwhile, so this group stays.
+    // A process that removes a group holds the lock, so this group stays.
     path.symlink_metadata()?;
     Ok((path, folder))
 }
 
-/// Removes empty groups of supervisors that were killed: those that can be locked, and as long as they are.
+/// Removes empty groups of killed supervisors, each while its lock is held.
 fn sweep(place: &Path) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
         let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         if folder.try_lock().is_ok() {
-            // A group with a process in it stays.
+            // A group with a process in it cannot be removed.
             let _ = std::fs::remove_dir(entry.path());
         }
     }
 }
 
-/// Returns the groups that limit this process's memory, its own first.
+/// Returns the groups that limit this process's memory, its own group first.
 pub(crate) fn memory_groups() -> Vec<PathBuf> {
     let read = |path| std::fs::read_to_string(path).unwrap_or_default();
     let (mounts, groups) = (read("/proc/self/mountinfo"), read("/proc/self/cgroup"));
     [Kind::Unified, Kind::Memory].into_iter().flat_map(|kind| places_in(&mounts, &groups, kind)).collect()
 }
 
-/// Returns the places for a group: in our own group, then in its parents up to the mounted root.
+/// Returns the places for a new group: in this process's group, then in its parents up to the mounted root.
 fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
     let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {

@@ -1,5 +1,5 @@
-//! Holdings of processes that neither their folder nor their resident memory shows: files without a name that are open,
-//! mapped or executed, and memory behind mappings that is resident for no process.
+//! Measures files and memory of processes that neither the folder nor resident memory shows: files without a name that
+//! are open, mapped or executed, and mapped memory that is resident for no process.
 
 use std::{
     collections::BTreeSet,
@@ -11,23 +11,23 @@ use std::{
 use super::folder::BLOCK;
 use crate::machine;
 
-/// The mark of the kernel for a file that has no name any more.
+/// The kernel's mark for a file that has no name any more.
 const GONE: &[u8] = b" (deleted)";
 /// The names of shared memory that is in no folder.
 const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
 
-/// The sum over some processes.
+/// The sum over several processes.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Holdings {
-    /// Bytes of files without a name.
+    /// The number of bytes of files without a name.
     pub(super) nameless: u64,
-    /// Bytes of memory that need not be resident for any process.
+    /// The number of bytes of memory that need not be resident for any process.
     pub(super) memory: u64,
 }
 
-/// Returns the memory and files of these processes (each with one of its threads). `root` is the working folder, the
-/// only place in which they make files. `executed` adds the files that they run, and `page_tables` the kernel's tables
-/// about their memory, which matter if address space is not limited.
+/// Returns the memory and files of `members` (each process with one of its threads). `root` is the working folder, the
+/// only place in which they create files. `executed` adds the files that they execute, and `page_tables` the kernel's
+/// tables for their memory, which matter if address space is not limited.
 pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
     let mut holdings = Holdings::default();
     let mut seen = BTreeSet::new();
@@ -66,7 +66,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
     holdings
 }
 
-/// Returns the path as `maps` shows it: names with newlines would make its lines ambiguous.
+/// Returns the path as written in `maps`, where names with newlines would make the lines ambiguous.
 fn path_in_maps(path: &Path) -> Vec<u8> {
     let lines: Vec<&[u8]> = path.as_os_str().as_bytes().split(|byte| *byte == b'\n').collect();
     lines.join(&b"\\012"[..])
@@ -75,14 +75,14 @@ fn path_in_maps(path: &Path) -> Vec<u8> {
 /// A mapping of a file that has no name any more.
 struct Mapping {
     shared: bool,
-    /// The place in the file at which it ends.
+    /// The offset in the file at which the mapping ends.
     end: u64,
     inode: u64,
     name: Vec<u8>,
 }
 
 impl Mapping {
-    /// Reads a line of `maps`, such as `7f00-7f10 rw-s 00000000 00:01 1042  /dev/zero (deleted)`.
+    /// Parses a line of `maps`, such as `7f00-7f10 rw-s 00000000 00:01 1042  /dev/zero (deleted)`.
     fn parse(line: &[u8]) -> Option<Self> {
         let line = line.strip_suffix(GONE)?;
         let start = line.iter().position(|byte| *byte == b'/')?;

@@ -1,15 +1,15 @@
 //! A supervisor for all runs of one submission, one after the other.
 //!
-//! Parts that do not differ between them are made once: the start of this program, a user and a control group, a root
-//! folder with the files that every run may see, the network namespace that has no network, Landlock's places and the
-//! filters. For each run the keeper forks into new namespaces of processes, mounts and messages; that child is the
-//! run's supervisor and the first process of its world, with a copy of the prepared mounts, a working folder in memory
-//! and a `/proc` of its own. All that a run could leave is removed with these; the prepared root is read-only for it,
-//! and no filter lets it make a socket. The next run begins when the kernel has ended the last process of the one
-//! before. A keeper whose run did not end by itself serves no other (the grader ensures that).
+//! The parts common to all runs are created once: the process itself, a user and a control group, a root folder with
+//! the files that every run may read, a namespace without network, Landlock's places and the filters. For each run the
+//! keeper forks into new namespaces of processes, mounts and messages; the child is the run's supervisor and the first
+//! process of its namespace, with a copy of the prepared mounts, a working folder in memory and a separate `/proc`.
+//! Everything that a run could leave behind is removed with them; the prepared root is read-only, and no filter allows
+//! sockets. The next run begins when the kernel has ended the last process of the previous run. After a run that did
+//! not end by itself, the grader uses no keeper again.
 //!
-//! The guardian outside holds user and control group until the keeper has ended; the keeper dies with it, and every run
-//! with the keeper.
+//! The guardian outside holds the user and the control group until the keeper has ended. The keeper dies with the
+//! guardian, and every run with the keeper.
 
 use std::{
     fs::File,
@@ -24,7 +24,7 @@ use std::{
 
 use super::{
     namespaces,
-    prepared::{HeldResources, PreparedRun},
+    prepared_run::{HeldResources, PreparedRun},
     run::{self, Run},
     view,
 };
@@ -34,18 +34,18 @@ use crate::{
     wire::{self, Event, Failure, RawBytes, RunOrder, stage},
 };
 
-/// A keeper without orders ends after this time, so that its user is free for others.
-const IDLE: Duration = Duration::from_secs(2);
+/// The time after which a keeper without orders ends, so that others can use its user.
+const MAX_IDLE: Duration = Duration::from_secs(2);
 /// The number of a program in its process namespace, where the supervisor is the first.
 const PROGRAM: i32 = 2;
 
-/// Serves the requests that come on standard input, a socket.
+/// Serves the requests from standard input, a socket.
 pub(super) fn main() -> ExitCode {
     let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
     let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
     ExitCode::from(match settle(&first.order) {
         Ok(Side::Guardian { keeper, held }) => {
-            // The pipe that the grader listens to must end with the run.
+            // The pipe that the grader reads must end with the run.
             drop((first, socket));
             let code = sys::wait_for(keeper).unwrap_or(1);
             drop(held);
@@ -53,15 +53,14 @@ pub(super) fn main() -> ExitCode {
         }
         Ok(Side::Keeper(keeper)) => keeper.serve(first, &socket),
         Err(failure) => {
-            // A grader that has ended needs no message.
+            // Sending fails if the grader has ended, which does not matter.
             let _ = wire::send(&mut first.answers, &Event::Failed(failure));
             1
         }
     })
 }
 
-/// One run: its order, the connection with the grader, the working folder on the disk, and further files for that
-/// folder.
+/// One run: its order, the connection with the grader, the working folder on disk, and further files for that folder.
 struct RunRequest {
     order: RunOrder,
     control: File,
@@ -71,7 +70,7 @@ struct RunRequest {
 }
 
 impl RunRequest {
-    /// Returns the next request; `None` when the grader has no more.
+    /// Returns the next request; `None` if the grader has no more.
     fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
         let mut byte = [0];
         let (length, descriptors) = sys::receive_descriptors(socket, &mut byte)?;
@@ -89,7 +88,7 @@ impl RunRequest {
 }
 
 enum Side {
-    /// Outside: nothing to do but to wait for the keeper.
+    /// Outside the namespaces: the process only waits for the keeper.
     Guardian {
         keeper: i32,
         held: HeldResources,
@@ -97,7 +96,7 @@ enum Side {
     Keeper(Keeper),
 }
 
-/// Takes the resources that a run has to itself, and prepares its world in a child.
+/// Takes the run's exclusive resources, and prepares its namespaces in a child.
 fn settle(order: &RunOrder) -> Result<Side, Failure> {
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(stage("fork"))?;
@@ -112,13 +111,13 @@ fn settle(order: &RunOrder) -> Result<Side, Failure> {
 }
 
 struct Keeper {
-    /// Every run takes it, in its own copy of this.
+    /// The resources, of which every run uses a copy.
     held: Option<HeldResources>,
     prepared: PreparedRun,
 }
 
 impl Keeper {
-    /// Serves one request after the other, until there are no more or one ends otherwise than expected.
+    /// Serves one request after the other, until there are no more or one ends unexpectedly.
     fn serve(mut self, first: RunRequest, socket: &UnixStream) -> u8 {
         let mut next = Some(first);
         while let Some(request) = next {
@@ -126,7 +125,7 @@ impl Keeper {
                 0 => {}
                 code => return code,
             }
-            next = match sys::poll([Some(socket.as_fd())], IDLE) {
+            next = match sys::poll([Some(socket.as_fd())], MAX_IDLE) {
                 Ok([Readiness::Ready]) => RunRequest::next(socket).ok().flatten(),
                 _ => None,
             };
@@ -137,22 +136,22 @@ impl Keeper {
     fn run(&mut self, mut request: RunRequest) -> u8 {
         let folder = wire::path(&request.order.folder);
         let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
-        // The place for the folder is there only as long as its run.
+        // The place for the folder exists only during its run.
         let forked = std::fs::create_dir_all(&folder).and_then(|()| self.prepared.fork_into(namespaces));
         match forked {
             Ok(Fork::Child) => sys::exit_now(self.supervise(request).into()),
             Ok(Fork::Parent(supervisor)) => {
                 drop(request);
                 let code = sys::wait_for(supervisor).unwrap_or(1);
-                // If it was visible before, it is not ours to remove.
+                // If it was visible before, it must not be removed.
                 let _ = std::fs::remove_dir(folder);
                 code
             }
-            Err(error) => run::tell(Err(Failure::new("make namespaces", &error)), &mut request.answers).max(1),
+            Err(error) => run::report_end(Err(Failure::new("make namespaces", &error)), &mut request.answers).max(1),
         }
     }
 
-    /// Serves one run; the answer is the run's exit code.
+    /// Serves one run, and returns its exit code.
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };
@@ -161,6 +160,6 @@ impl Keeper {
             .and_then(|()| view::complete(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))
             .and_then(|run| run.finish(&mut answers));
-        run::tell(finished, &mut answers)
+        run::report_end(finished, &mut answers)
     }
 }

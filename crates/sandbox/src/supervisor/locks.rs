@@ -1,9 +1,9 @@
-//! Locks of files on behalf of build tools: in the working folder only.
+//! Locks files on behalf of build tools, only in the working folder.
 //!
-//! A lock needs no right to write, so that every program that may read a file of the system could hold it against the
-//! whole machine. Submissions lock nothing. Locks of build tools are announced, and allowed if the open file is beneath
-//! the working folder. (A thread that exchanges the descriptor between check and lock gains a lock without effect, for
-//! the length of the build.)
+//! A lock needs no right to write, so every program that may read a file of the system could block the whole machine
+//! with a lock. Submissions lock nothing. Locks of build tools are announced, and allowed if the open file is beneath
+//! the working folder. (A thread that replaces the descriptor between check and lock gets a harmless lock for the
+//! duration of the build.)
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub(super) fn concerns(call: i64) -> bool {
     call == libc::SYS_flock || call == libc::SYS_fcntl
 }
 
-/// Returns whether the announced lock is of a file beneath `root`.
+/// Returns whether the announced lock is of a file below `root`.
 pub(super) fn is_inside(announced: &PendingCall, root: &Path) -> bool {
     let known = announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
     let entry = format!("/proc/{}/fd/{}", announced.thread, announced.arguments[0] as i32);

@@ -1,7 +1,7 @@
-//! The supervisor: a fresh process of our own binary that runs one program and reports when all processes are dead.
+//! The supervisor, a new process of this binary that runs one program and reports when all processes are dead.
 //!
-//! It never reads a scene, a trace or a verdict, and it trusts only the kernel's wait status, counters and
-//! announcements, not the program's output.
+//! It never reads a scene, a trace or a verdict, and trusts only the kernel's wait status, counters and announcements,
+//! not the program's output.
 
 mod answers;
 mod calls;
@@ -12,17 +12,17 @@ mod group;
 mod holdings;
 mod keeper;
 mod locks;
+mod memory_folder;
 mod modes;
 mod namespaces;
 pub(super) mod orphans;
-mod prepared;
+mod prepared_run;
 mod probe;
 pub(super) mod processes;
 mod run;
 mod slot;
 mod streams;
 mod view;
-mod volatile;
 mod walls;
 
 use std::{ffi::OsString, process::ExitCode};
@@ -34,13 +34,13 @@ use super::wire::SUPERVISOR_ARGUMENT;
 pub(super) const MODE_RUN: &str = "run";
 /// The mode for all runs of one submission.
 pub(super) const MODE_KEEP: &str = "keep";
-/// The mode that reports which walls hold.
+/// The mode that tests the layers and reports the results.
 pub(super) const MODE_PROBE: &str = "probe";
 
 /// Turns this process into a supervisor if it was started as one; otherwise `None`.
 ///
-/// A program that uses the sandbox calls this first of all in its `main`, before it starts any thread, with its own
-/// arguments (`std::env::args_os()`), and returns the code if there is one.
+/// A program that uses the sandbox must call this first in its `main`, before it starts any thread, with its own
+/// arguments (`std::env::args_os()`), and must return the code if there is one.
 pub fn supervisor_main(arguments: impl IntoIterator<Item = OsString>) -> Option<ExitCode> {
     let mut arguments = arguments.into_iter().skip(1);
     if arguments.next()? != SUPERVISOR_ARGUMENT {

@@ -1,12 +1,12 @@
-//! Namespaces of its own for one run: processes, network, messages and mounts.
+//! Namespaces for one run: processes, network, messages and mounts.
 //!
-//! The supervisor itself moves in. It forks once into a new process namespace, where it is process 1: when it dies,
-//! whatever the reason, the kernel ends everything below it immediately. The process that stays outside, the
-//! *guardian*, only waits. Root needs no user namespace; an ordinary user gets one in which it is itself, with rights
-//! over the new namespaces only. These rights end with the execution of the program.
+//! The supervisor itself moves into them. It forks once into a new process namespace, where it is process 1, so the
+//! kernel ends all its descendants when it dies for any reason. The process outside, the *guardian*, only waits. Root
+//! needs no user namespace. An ordinary user gets a user namespace in which it keeps its identity and has rights only
+//! over the new namespaces. The rights end when the program is executed.
 //!
-//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and gives each run a process
-//! namespace, mounts and messages of its own within.
+//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and creates a process namespace,
+//! mounts and messages for each run inside.
 
 use super::view;
 use crate::{
@@ -17,13 +17,13 @@ use crate::{
 
 /// The process in which [`enter`] returns.
 pub(super) enum Side {
-    /// Inside: go on.
+    /// The process inside the namespaces, which continues.
     Inside,
-    /// Outside, after the process inside has ended with this code.
+    /// The process outside, after the process inside has ended with this code.
     Outside(u8),
 }
 
-/// Moves into namespaces of its own, in which only what the order needs is visible.
+/// Moves into new namespaces in which only the files and processes of the order are visible.
 ///
 /// # Errors
 ///
@@ -40,19 +40,19 @@ pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     }
 }
 
-/// Forks into a new process namespace, an ordinary user's with a user namespace around it. The child dies with the
+/// Forks into a new process namespace, for an ordinary user within a new user namespace. The child dies with the
 /// guardian.
 ///
 /// # Errors
 ///
-/// As for [`enter`].
+/// The errors of [`enter`].
 pub(super) fn leave() -> Result<Fork, Failure> {
     let (user, group) = (sys::user(), sys::group());
     if user == 0 {
         mounts::unshare(libc::CLONE_NEWPID).map_err(stage("make a process namespace"))?;
     } else {
         mounts::unshare(libc::CLONE_NEWUSER | libc::CLONE_NEWPID).map_err(stage("make a user namespace"))?;
-        // The kernel wants the groups given up before an ordinary user names its own.
+        // The kernel requires an ordinary user to give up supplementary groups before it sets a group.
         for (file, text) in [
             ("/proc/self/setgroups", "deny".to_string()),
             ("/proc/self/uid_map", format!("{user} {user} 1")),

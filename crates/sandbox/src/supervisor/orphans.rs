@@ -8,7 +8,7 @@ use super::{
 };
 
 /// Ends the processes that a lost supervisor may have left: those of its child's session and those of the child's own
-/// user. A process namespace ends all of its processes by itself, and its sessions have no numbers here.
+/// user. A process namespace ends all of its processes by itself, and its session numbers are not valid here.
 pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
     // The supervisor's lock of the user ended with it, and another run may have the user by now.

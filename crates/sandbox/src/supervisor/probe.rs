@@ -1,4 +1,4 @@
-//! Tries every wall once, in a child that then ends, and reports the kernel's answers.
+//! Tests every layer once, in a child that then ends, and reports the kernel's answers.
 
 use std::{
     fs::{File, Permissions},
@@ -23,15 +23,15 @@ use crate::{
     wire::{self, Failure, Probe, RunOrder},
 };
 
-/// The first kernel interface whose rules also confine signals and abstract sockets.
-const SCOPES_SINCE: i32 = 6;
+/// The first Landlock version that restricts signals and abstract sockets.
+const SIGNAL_SCOPE_ABI: i32 = 6;
 
 /// Writes a [`Probe`] to standard output.
 pub(super) fn main() -> ExitCode {
     match probe().and_then(|probe| wire::send(io::stdout(), &probe)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // For the grader's message. Without a reader the message has no receiver.
+            // The grader shows this message. Writing fails without a reader, which does not matter.
             let _ = writeln!(io::stderr(), "{error}");
             ExitCode::from(1)
         }
@@ -62,7 +62,8 @@ fn probe() -> io::Result<Probe> {
         Fork::Child => {
             drop(parent);
             let tried = try_walls(probe, user);
-            // Written as a file, because the filter knows no socket calls. A parent that has ended needs no answer.
+            // Written as a file, because the filter allows no socket calls. Sending fails if the parent has ended,
+            // which does not matter.
             let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
             sys::exit_now(0)
         }
@@ -77,14 +78,15 @@ fn probe() -> io::Result<Probe> {
     }
 }
 
-/// Tries to execute an empty file in the temporary folder: if files may be executed there, the kernel answers that it
-/// is no program. Otherwise it tries the same in memory. Returns why neither works, and whether memory is needed.
+/// Tries to execute an empty file in the temporary folder. If execution is allowed there, the kernel answers that the
+/// file is not a program. Otherwise tries the same in memory. Returns the reason if neither works, and whether memory
+/// is needed.
 fn try_execution() -> (Option<String>, bool) {
     let executable = |error: io::Error| match error.raw_os_error() {
         Some(libc::ENOEXEC) => Ok(()),
         _ => Err(error),
     };
-    // Neither file has a name, so that nothing is left of a prober that is killed.
+    // Neither file has a name, so a killed prober leaves nothing behind.
     let try_file = |file: File| -> io::Result<()> {
         file.set_permissions(Permissions::from_mode(0o555))?;
         // A file that is open for writing is busy.
@@ -99,19 +101,16 @@ fn try_execution() -> (Option<String>, bool) {
         Ok(()) => (None, false),
         Err(error) if error.raw_os_error() == Some(libc::EACCES) => {
             let why = in_memory().err().map(|memory| {
-                format!(
-                    "nothing may be executed in {} ({error}), and not in memory either ({memory})",
-                    folder.display()
-                )
+                format!("programs cannot be executed in {} ({error}) or in memory ({memory})", folder.display())
             });
             (why, true)
         }
-        // A grading will report what is wrong with the folder.
+        // A grading will report the folder's problem.
         Err(error) => (Some(format!("{}: {error}", folder.display())), false),
     }
 }
 
-/// Ends a child by its control group; the answer is the limits of such a group, and whether it could end the child.
+/// Ends a child by its control group. Returns the limits of the group, and whether it could end the child.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::make(&RunOrder::default())?;
     let mut entrances = group.entrances()?;
@@ -119,7 +118,8 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let Fork::Parent(child) = sys::fork()? else {
         let word = entrances.iter_mut().try_for_each(|entrance| entrance.write_all(b"0"));
         let word = word.map_err(|error| error.to_string());
-        // A prober that has ended needs no answer, and one that never kills is our parent, with which we die.
+        // If the prober has ended, sending fails, which does not matter. If the prober never kills this process, it
+        // dies with the prober, its parent.
         let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
         loop {
             std::thread::sleep(Duration::from_secs(1));
@@ -139,7 +139,7 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     killed.map(|()| (group.controls(), group.can_kill()))
 }
 
-/// Moves into namespaces in a child that then ends, with a folder in sight that every Linux has.
+/// Moves into namespaces in a child that then ends, with a visible folder that every Linux has.
 fn try_namespaces() -> Option<String> {
     let order = RunOrder {
         program: wire::raw(Path::new("/bin/sh")),
@@ -157,20 +157,20 @@ fn try_namespaces() -> Option<String> {
         drop(answer);
         let word = match namespaces::enter(&order) {
             Ok(Side::Inside) => Some(None),
-            // It has reported by itself, or died without a report.
+            // The child has reported the reason, or died without a report.
             Ok(Side::Outside(_)) => None,
             Err(Failure { stage, errno }) => {
                 Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))
             }
         };
-        // A prober that has ended needs no answer.
+        // Sending fails if the prober has ended, which does not matter.
         let _ = word.map(|word: Option<String>| wire::send(&mut told, &word));
         sys::exit_now(0)
     };
     tried().unwrap_or_else(|error| Some(error.to_string()))
 }
 
-/// Puts up one wall after the other.
+/// Sets up one layer after the other.
 fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
     probe.limits = failure_reason(sys::limit(Resource::Core, 0).and_then(|()| sys::limit(Resource::Fsize, 1 << 30)));
     if let Some(user) = user {
@@ -179,7 +179,7 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
     probe.no_new_privileges = failure_reason(sys::no_new_privileges());
     probe.landlock = match probe.landlock_abi {
         0 => Some("the kernel has no Landlock, or it is switched off".into()),
-        version => failure_reason(walls::nothing(version >= SCOPES_SINCE).and_then(walls::enforce)),
+        version => failure_reason(walls::nothing(version >= SIGNAL_SCOPE_ABI).and_then(walls::enforce)),
     };
     let filters = |announce| {
         let own_process = Some(std::process::id() as i32);

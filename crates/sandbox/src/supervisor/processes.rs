@@ -1,4 +1,4 @@
-//! The processes below us, as `/proc` shows them, and their end.
+//! The processes below this one, as reported by `/proc`, and ways to end them.
 
 use std::{
     collections::BTreeSet,
@@ -8,27 +8,27 @@ use std::{
 
 use crate::{machine, sys};
 
-/// The fields of one line of `/proc/PID/stat` that matter.
+/// The relevant fields of one line of `/proc/PID/stat`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Stat {
     pid: i32,
     state: u8,
     parent: i32,
     session: i32,
-    /// Processor time of the process and of its reaped children, in ticks of 10 ms.
+    /// The processor time of the process and of its reaped children, in ticks of 10 ms.
     ticks: u64,
     threads: u64,
     resident_pages: u64,
 }
 
 impl Stat {
-    /// Returns whether anything of the process can still run. A process whose main thread has left looks dead (state Z)
-    /// while its other threads continue.
+    /// Returns whether any thread of the process can still run. A process whose main thread has ended is shown as dead
+    /// (state Z) while its other threads continue.
     fn is_alive(&self) -> bool {
         self.threads > 1 || !matches!(self.state, b'Z' | b'X')
     }
 
-    /// Returns the resident memory in pages. A main thread that has left has none; its other threads share the same
+    /// Returns the resident memory in pages. A main thread that has ended has none; its other threads share the same
     /// memory.
     fn resident(&self) -> u64 {
         if self.state != b'Z' || !self.is_alive() {
@@ -39,18 +39,18 @@ impl Stat {
     }
 }
 
-/// The usage of a group of processes together.
+/// The resource usage of a group of processes together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Usage {
-    /// Processor time of those that live, and of their reaped children.
+    /// The processor time of living processes and their reaped children.
     pub(super) cpu: Duration,
-    /// Resident memory in bytes, with the part that was moved to a disk.
+    /// The resident memory in bytes, including swapped memory.
     pub(super) memory: u64,
-    /// Threads.
+    /// The number of threads.
     pub(super) threads: u64,
 }
 
-/// Returns the usage of the process `pid`; with `tree`, of it and all other descendants of this process. `/proc` counts
+/// Returns the usage of the process `pid`; with `tree`, also of all other descendants of this process. `/proc` counts
 /// time in hundredths of a second on every Linux.
 pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
@@ -69,7 +69,7 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     usage
 }
 
-/// Bytes of a process that were moved to a disk. Where the main thread has left, another one knows.
+/// Returns the number of swapped bytes of a process. If the main thread has ended, another thread reports it.
 fn read_swapped(pid: i32) -> u64 {
     let of = |thread: i32| {
         machine::bytes_of(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
@@ -78,7 +78,7 @@ fn read_swapped(pid: i32) -> u64 {
 }
 
 /// Returns the process and, with `tree`, all other living descendants of this process, each with its threads. One
-/// thread is enough where all of a process share their descriptors and memory; a main thread that has left shares
+/// thread is enough if all threads of a process share their descriptors and memory; a main thread that has ended shares
 /// nothing any more.
 pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     let stats = if tree { descendants() } else { read(pid).into_iter().collect() };
@@ -98,14 +98,14 @@ pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
     numbers_in(format!("/proc/{pid}/task"))
 }
 
-/// Returns the processes of a user, by the ids that `/proc` entries belong to.
+/// Returns the processes of a user, from the owners of `/proc` entries.
 pub(super) fn find_by_user(user: u32) -> Vec<i32> {
     use std::os::unix::fs::MetadataExt;
     let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
     all().filter(owned).collect()
 }
 
-/// Returns the threads of a user, as the kernel counts them for its limit.
+/// Returns the number of threads of a user, as counted by the kernel for its limit.
 pub(super) fn threads_of_user(user: u32) -> u64 {
     find_by_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
 }
@@ -113,25 +113,25 @@ pub(super) fn threads_of_user(user: u32) -> u64 {
 /// The processes that did not end.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct LeftProcesses {
-    /// Processes.
+    /// The number of processes.
     pub(super) count: u32,
-    /// Whether the kernel itself holds all of them (state D), which no program can cause.
+    /// Whether the kernel itself blocks all of them (state D), which no program can cause.
     pub(super) held: bool,
 }
 
-/// Ends every descendant and everything that runs as `user`, reaping as it goes. With `alone` this process is the first
-/// of a process namespace with no processes but the run's.
+/// Ends every descendant and every process of `user`, and reaps them. With `alone`, this process is the first of a
+/// process namespace that contains only the run's processes.
 ///
-/// All processes are stopped before any is killed: a fork bomb would otherwise use each place that becomes free.
-/// `reaped` is called for every process that was reaped.
+/// All processes are stopped before any is killed, because a fork bomb would otherwise use each place that becomes
+/// free. `reaped` is called for every process that was reaped.
 pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::ReapedProcess)) -> LeftProcesses {
-    // Only a process that the kernel itself holds (state D) lasts so long.
+    // Only a process that the kernel itself blocks (state D) lasts this long.
     const PATIENCE: Duration = Duration::from_secs(20);
     let start = Instant::now();
     loop {
         if alone {
-            // One command ends all, whatever they look like, and without a child left there is no process.
-            if sys::kill_everybody_inside() && reap_all(&mut reaped) {
+            // One command ends all processes in any state. If no child is left, there are no other processes.
+            if sys::kill_namespace() && reap_all(&mut reaped) {
                 return LeftProcesses::default();
             }
         }
@@ -140,7 +140,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
             victims.extend(user.into_iter().flat_map(find_by_user));
             victims
         });
-        // No child is left, and no zombie either.
+        // No child is left, not even a zombie.
         if reap_all(&mut reaped) && user.is_none_or(|user| find_by_user(user).is_empty()) {
             return LeftProcesses::default();
         }
@@ -152,7 +152,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
     }
 }
 
-/// Reaps the children that have ended; true if no child is left.
+/// Reaps the children that have ended. Returns true if no child is left.
 fn reap_all(reaped: &mut impl FnMut(sys::ReapedProcess)) -> bool {
     loop {
         match sys::reap() {
@@ -169,7 +169,7 @@ pub(super) fn find_of_session(session: i32) -> Vec<i32> {
     members.map(|stat| stat.pid).collect()
 }
 
-/// Stops the victims until no new one appears, then kills all of them, and returns them.
+/// Stops the victims until no new one appears, then kills and returns all of them.
 pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
     const ROUNDS: u32 = 100;
     let mut stopped = BTreeSet::new();
@@ -179,7 +179,7 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
             break;
         }
         for pid in fresh {
-            // It may have ended by itself meanwhile; the next round shows that.
+            // The process may have ended by itself; the next round shows that.
             let _ = sys::kill(pid, libc::SIGSTOP);
             stopped.insert(pid);
         }
@@ -191,13 +191,13 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
     stopped.into_iter().collect()
 }
 
-/// Returns all living descendants of this process. As their reaper it is an ancestor even of those whose parents have
-/// died.
+/// Returns all living descendants of this process. As their reaper it is an ancestor even of processes whose parents
+/// have died.
 fn descendants() -> Vec<Stat> {
     let mut stats: Vec<Stat> = all().filter_map(read).collect();
     let mut family = vec![std::process::id() as i32];
     let mut found = Vec::new();
-    // Parents need not have smaller numbers than their children: repeat until no process is added.
+    // Parents may have larger numbers than their children, so this repeats until no process is added.
     loop {
         let (mut mine, rest): (Vec<Stat>, Vec<Stat>) = stats.iter().partition(|stat| family.contains(&stat.parent));
         if mine.is_empty() {
@@ -230,8 +230,8 @@ fn read(pid: i32) -> Option<Stat> {
     parse(&std::fs::read(format!("/proc/{pid}/stat")).ok()?)
 }
 
-/// Reads the line. The name in parentheses may hold anything, including parentheses and newlines, so that the fields
-/// count from the last closing parenthesis.
+/// Parses the line. The name in parentheses may contain anything, including parentheses and newlines, so the fields are
+/// counted from the last closing parenthesis.
 fn parse(line: &[u8]) -> Option<Stat> {
     let end = line.iter().rposition(|&byte| byte == b')')?;
     let pid = std::str::from_utf8(line.split(|&byte| byte == b' ').next()?).ok()?.parse().ok()?;
@@ -273,7 +273,7 @@ mod tests {
         let children: Vec<_> =
             (0..3).map(|_| std::process::Command::new("/bin/sleep").arg("1000").spawn().unwrap()).collect();
         let pids: Vec<i32> = children.iter().map(|child| child.id() as i32).collect();
-        // Each check finds one more, as if it had just been forked.
+        // Each check finds one more process, as if it had just been forked.
         let looks = std::cell::Cell::new(0);
         let found = stop_then_kill(|| {
             looks.set((looks.get() + 1).min(pids.len()));

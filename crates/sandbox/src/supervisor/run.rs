@@ -1,4 +1,4 @@
-//! One supervised run: start, watch, kill, report.
+//! Supervises one run: start, watch, kill, report.
 
 use std::{
     ffi::CString,
@@ -22,7 +22,7 @@ use super::{
     group::Group,
     holdings, locks, modes,
     namespaces::{self, Side},
-    prepared::{HeldResources, PreparedRun},
+    prepared_run::{HeldResources, PreparedRun},
     processes, slot,
     streams::CapturedStream,
 };
@@ -32,12 +32,12 @@ use crate::{
     wire::{self, Event, Failure, Report, RunOrder, stage},
 };
 
-/// The time between two checks of clocks and counters. A check costs some ten microseconds.
+/// The time between two checks of clocks and counters. A check takes about ten microseconds.
 const TICK: Duration = Duration::from_millis(10);
-/// Looking at the folder may cost this part of the time at most.
+/// The divisor that limits checks of the folder to a share of the total time.
 const FOLDER_SHARE: u32 = 20;
 
-/// Runs the order that comes on standard input and answers on standard output.
+/// Runs the order from standard input, and answers on standard output.
 pub(super) fn main() -> ExitCode {
     let streams = || -> io::Result<(File, File)> {
         Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
@@ -47,15 +47,15 @@ pub(super) fn main() -> ExitCode {
         .map_err(stage("read the order"))
         .and_then(|order| settle(order, control));
     ExitCode::from(match settled {
-        Ok(SettledRun::Here(run)) => tell(run.finish(&mut answers), &mut answers),
+        Ok(SettledRun::Here(run)) => report_end(run.finish(&mut answers), &mut answers),
         // The process inside has reported everything.
         Ok(SettledRun::Elsewhere(code)) => code,
-        Err(failure) => tell(Err(failure), &mut answers),
+        Err(failure) => report_end(Err(failure), &mut answers),
     })
 }
 
-/// Reports how it ended. Returns the supervisor's exit code: 0 if the grader has received the report.
-pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
+/// Reports how the run ended. Returns the supervisor's exit code: 0 if the grader has received the report.
+pub(super) fn report_end(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
     let sent = match finished {
         Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
             .and_then(|()| answers.write_all(&stdout))
@@ -66,16 +66,16 @@ pub(super) fn tell(finished: Result<Option<FinishedRun>, Failure>, answers: &mut
     u8::from(sent.is_err())
 }
 
-/// A run that has begun, or the word that all is over.
+/// A run that has begun, or the result of a run in another process.
 enum SettledRun {
     Here(Box<Run>),
-    /// The end was another process's business, which ended with this code.
+    /// Another process has supervised the run and ended with this code.
     Elsewhere(u8),
 }
 
-/// Finds a user and a world for the run, and starts it there.
+/// Finds a user and sets up namespaces for the run, and starts it there.
 fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
-    // Alone in its session, the supervisor does not get the terminal's Ctrl-C; the grader sends it the stop.
+    // In a separate session, the supervisor does not receive the terminal's Ctrl-C; the grader sends it the stop.
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let held = HeldResources::take(&order)?;
     if order.walls.namespaces
@@ -86,17 +86,17 @@ fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     Run::start(order, control, held, &PreparedRun::default()).map(|run| SettledRun::Here(Box::new(run)))
 }
 
-/// The report, standard output and standard error.
+/// The report, the standard output and the standard error.
 pub(super) type FinishedRun = (Report, Vec<u8>, Vec<u8>);
 
-/// A program at work, seen from its supervisor.
+/// A running program, as seen by its supervisor.
 pub(super) struct Run {
     order: Rc<RunOrder>,
     control: File,
     folder: OwnedFd,
-    /// The trace's name in the folder.
+    /// The name of the trace in the folder.
     trace: Option<CString>,
-    /// The user that the program runs as, if it is its own, and who owned the folder before.
+    /// The program's own user, if it has one, and the previous owner of the folder.
     slot: Option<(slot::Slot, (u32, u32))>,
     /// The control group, if there is one.
     group: Option<Group>,
@@ -112,7 +112,7 @@ pub(super) struct Run {
     main_status: Option<i32>,
     cause: Option<RunEnd>,
     peak_memory: u64,
-    /// Memory that the last check of mappings found and that is resident for no process.
+    /// The memory that is resident for no process, at the last check of mappings.
     unseen_memory: u64,
     orphaned: bool,
 }
@@ -131,9 +131,9 @@ impl Run {
         let trace = order.trace.clone().map(CString::new).transpose();
         let trace = trace.map_err(|error| Failure::new("name the trace", &error.into()))?;
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
-        let slot = slot.map_err(stage("give the working folder away"))?;
+        let slot = slot.map_err(stage("change the owner of the working folder"))?;
         if order.volatile {
-            hand_over(&control, folder.as_fd()).map_err(stage("hand the working folder over"))?;
+            send_folder(&control, folder.as_fd()).map_err(stage("send the working folder to the grader"))?;
         }
         let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
         let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
@@ -163,7 +163,7 @@ impl Run {
             Fork::Child => child::become_program(plan),
             Fork::Parent(pid) => pid,
         };
-        // The child's parts are closed here, so that the ends of pipes and sockets can be seen.
+        // The child's descriptors are closed here, so that the ends of pipes and sockets can be detected.
         drop(plan);
         Ok(Self {
             stdout: CapturedStream::new(stdout, order.limits.output_bytes).map_err(stage("read standard output"))?,
@@ -189,21 +189,21 @@ impl Run {
         })
     }
 
-    /// Watches until the program has ended or must end, ends everything, and reports. `None` when the grader has ended.
+    /// Watches until the program has ended or must end, ends everything, and reports. `None` if the grader has ended.
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.user();
-        // A grader that has ended shows as the end of the control pipe, too.
+        // The end of the control pipe also shows the end of a grader.
         let walls = self.order.walls;
         let session = (!walls.namespaces).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
-            // Processes that are left over, if any, are ended one by one.
+            // Remaining processes, if any, are ended one by one.
             let _ = group.kill();
         }
         if main_status.is_none() {
-            // Its number is its own until it is reaped.
+            // The process number is not reused until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
         let left = processes::end_all(user, walls.namespaces, |process| {
@@ -211,11 +211,11 @@ impl Run {
                 main_status = Some(process.status);
             }
         });
-        self.stdout.take_rest();
-        self.stderr.take_rest();
-        self.hear();
+        self.stdout.read_rest();
+        self.stderr.read_rest();
+        self.read_messages();
         let mut after = contents(&self.order, self.folder.as_fd());
-        // Most programs make no folders.
+        // Most programs create no folders.
         let shallow = match after.over || after.folders > 0 {
             true => {
                 let shallow = folder::open_up(self.folder.as_fd());
@@ -224,9 +224,9 @@ impl Run {
             }
             false => true,
         };
-        // Files that a submission leaves in memory are read only by root.
+        // Only root reads files that a submission leaves in memory.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
-            folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("take the working folder back"))?;
+            folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("restore the folder's owner"))?;
         }
         // Cleaning up counts for the run.
         let wall = self.began.elapsed();
@@ -234,7 +234,8 @@ impl Run {
         if self.orphaned {
             return Ok(None);
         }
-        // Most print nothing, and finding no message there is expensive: it asks the processor several things.
+        // Most programs print nothing, and searching for a message is expensive, because it queries the processor
+        // several times.
         let told = Some(&self.told[..]).filter(|told| !told.is_empty());
         let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
         let exec_errno = match failure {
@@ -242,13 +243,13 @@ impl Run {
             Some(failure) => return Err(failure),
             None => None,
         };
-        // A process that the kernel holds is the host's matter; any other that did not end has caused this itself.
-        self.blame_if(
+        // A process that the kernel blocks is the host's problem; the program has caused any other that did not end.
+        self.record_cause(
             left.count > 0 && !left.held,
-            RunEnd::Violation { call: "none, but it left processes that do not end".into() },
+            RunEnd::Violation { call: "none, but it left processes that did not end".into() },
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
-        self.blame_if(out_of_memory, RunEnd::MemoryLimit);
+        self.record_cause(out_of_memory, RunEnd::MemoryLimit);
         let (cpu, largest) = sys::children_usage().map_err(stage("ask for the usage"))?;
         let report = Report {
             cause: self.cause.take(),
@@ -268,7 +269,7 @@ impl Run {
         Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
     }
 
-    /// Watches until the main process has ended or there is a cause to end it.
+    /// Watches until the main process has ended or there is a reason to end it.
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now() + TICK, Instant::now() + TICK);
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
@@ -288,7 +289,7 @@ impl Run {
             )?;
             let ready = found.map(|one| one != Readiness::Idle);
             if ready[0] {
-                self.obey();
+                self.run_commands();
             }
             if ready[1] {
                 self.stdout.take();
@@ -297,13 +298,13 @@ impl Run {
                 self.stderr.take();
             }
             if ready[3] {
-                self.hear();
+                self.read_messages();
             }
             match found[4] {
                 Readiness::Idle => {}
                 Readiness::Ready => self.decide_announcement()?,
-                // No process is left under the filter: the kernel would report that immediately and repeatedly until
-                // the end is reaped.
+                // No process is left under the filter. The kernel would report that repeatedly until the process is
+                // reaped.
                 Readiness::HungUp => self.listener = None,
             }
             let now = Instant::now();
@@ -316,36 +317,36 @@ impl Run {
                 next_look = Instant::now() + TICK;
             }
             if now >= next_folder {
-                self.look_at_folder();
+                self.check_folder();
                 next_folder = Instant::now() + TICK.max(now.elapsed() * FOLDER_SHARE);
             }
         }
         Ok(())
     }
 
-    /// Returns the user that the program runs as, if it is its own.
+    /// Returns the program's own user, if it has one.
     fn user(&self) -> Option<u32> {
         self.slot.as_ref().map(|(slot, _)| slot.user)
     }
 
-    /// Notes the first cause.
-    fn blame_if(&mut self, condition: bool, cause: RunEnd) {
+    /// Records the cause if it is the first.
+    fn record_cause(&mut self, condition: bool, cause: RunEnd) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
     }
 
-    /// Obeys commands of the grader; the end of its pipe is the end of the grader.
-    fn obey(&mut self) {
+    /// Executes commands of the grader. The end of its pipe means that the grader has ended.
+    fn run_commands(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
-            Ok(1) => self.blame_if(true, RunEnd::Cancelled),
+            Ok(1) => self.record_cause(true, RunEnd::Cancelled),
             _ => self.orphaned = true,
         }
     }
 
-    /// Reads the child's messages; the end of the socket means that the program has started.
-    fn hear(&mut self) {
+    /// Reads the child's messages. The end of the socket means that the program has started.
+    fn read_messages(&mut self) {
         let mut buffer = [0; 4096];
         while let Some(status) = &self.status {
             let Ok((length, mut descriptors)) = sys::receive_descriptors(status, &mut buffer) else { return };
@@ -357,7 +358,7 @@ impl Run {
         }
     }
 
-    /// Decides about a forbidden call that waits: either it starts the program, or the program ends.
+    /// Decides about a waiting forbidden call: it either starts the program, or ends the run.
     fn decide_announcement(&mut self) -> io::Result<()> {
         let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
             return Ok(());
@@ -372,7 +373,7 @@ impl Run {
             }
         };
         // The socket closes when the program starts, before its first instruction.
-        self.hear();
+        self.read_messages();
         let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
         let (user, root) = (self.user(), wire::path(&self.order.folder));
         let unless = |allowed| if allowed { CallAnswer::GoOn } else { CallAnswer::Refused(libc::EPERM) };
@@ -392,7 +393,7 @@ impl Run {
             _ => None,
         };
         if let Some(answer) = answer {
-            // The caller may have been killed meanwhile; then no process waits for this answer.
+            // Answering fails if the caller has been killed, which does not matter.
             let _ = sys::answer(listener.as_fd(), announced.id, answer);
             return Ok(());
         }
@@ -403,14 +404,14 @@ impl Run {
             call.push_str(match flags & libc::CLONE_THREAD as u64 {
                 _ if namespace => " (it made a namespace)",
                 0 => " (it started another process)",
-                _ => " (it made a thread with descriptors of its own)",
+                _ => " (it created a thread with separate descriptors)",
             });
         } else if call.ends_with("fork") {
             call.push_str(" (it started another process)");
         } else if executes {
             call.push_str(" (it started another program)");
         }
-        self.blame_if(true, RunEnd::Violation { call });
+        self.record_cause(true, RunEnd::Violation { call });
         Ok(())
     }
 
@@ -432,37 +433,37 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        // A bomb of processes passes both.
-        self.blame_if(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
-        self.blame_if(memory > self.order.limits.memory, RunEnd::MemoryLimit);
+        // A fork bomb exceeds both limits.
+        self.record_cause(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
+        self.record_cause(memory > self.order.limits.memory, RunEnd::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
-        self.blame_if(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
-        self.blame_if(self.is_trace_over(), RunEnd::TraceLimit);
-        self.blame_if(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
+        self.record_cause(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
+        self.record_cause(self.is_trace_over(), RunEnd::TraceLimit);
+        self.record_cause(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
-    /// Returns whether the file at the trace's place is longer than a trace may be.
+    /// Returns whether the file with the trace's name is longer than a trace may be.
     fn is_trace_over(&self) -> bool {
         let opened = self.trace.as_ref().map(|name| sys::open_beneath(self.folder.as_fd(), name, OFlags::PATH));
         let metadata = opened.and_then(|opened| File::from(opened.ok()?).metadata().ok());
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
-    /// Returns the group's processor time, if there may be processes that are not reaped. A single process's own count
-    /// is complete, and its group may have served earlier runs.
+    /// Returns the group's processor time, if there may be unreaped processes. The count of a single process is
+    /// complete, and its group may have served earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
 
     /// Checks the working folder, removed files that are still in use, and memory that is resident for no process.
-    fn look_at_folder(&mut self) {
+    fn check_folder(&mut self) {
         let mut contents =
             folder::measure(self.folder.as_fd(), self.order.folder_bytes(), self.order.limits.folder_files);
         if self.order.volatile {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
         let over = self.over(&contents);
-        self.blame_if(over, RunEnd::FolderLimit);
+        self.record_cause(over, RunEnd::FolderLimit);
         if self.order.volatile && !self.can_hide_memory() {
             return;
         }
@@ -476,16 +477,16 @@ impl Run {
         }
         self.unseen_memory = held.memory;
         let over = self.over(&contents);
-        self.blame_if(over, RunEnd::FolderLimit);
+        self.record_cause(over, RunEnd::FolderLimit);
     }
 
-    /// Returns whether there may be memory that is resident for no process: files that are neither in the folder nor
-    /// denied by rules.
+    /// Returns whether there may be memory that is resident for no process: files outside the folder that no rules
+    /// deny.
     fn can_hide_memory(&self) -> bool {
         self.order.tools || self.order.sanitizers || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
-    /// Returns whether there may be other processes than the main one. Without the filter every program can start some.
+    /// Returns whether there may be processes other than the main one. Without the filter every program can start some.
     fn has_children(&self) -> bool {
         self.order.tools || !self.order.walls.seccomp
     }
@@ -501,14 +502,14 @@ fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
 }
 
-/// Gives the working folder to the run's own user, and returns its former owner.
+/// Changes the owner of the working folder to the run's own user, and returns the previous owner.
 fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
     folder::give(folder, user, user)?;
     Ok((owner.uid(), owner.gid()))
 }
 
-/// Returns the number of the descriptor by which alone the program can be executed, where only the filter decides that.
+/// Returns the descriptor number from which alone the program can be executed, if only the filter decides that.
 fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);
@@ -519,8 +520,8 @@ fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Fa
     entrance.map(Some).map_err(stage("open the program once more"))
 }
 
-/// Sends the grader the folder.
-fn hand_over(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
+/// Sends the folder to the grader.
+fn send_folder(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
     sys::send_descriptors(&socket, wire::FOLDER, [folder])
 }

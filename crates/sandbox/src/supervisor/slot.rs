@@ -1,7 +1,7 @@
-//! One user id per running program, so that programs that run side by side cannot signal or read each other.
+//! Gives each running program its own user id, so that simultaneous programs cannot signal or read each other.
 //!
-//! Only root can become another user. The ids are 61000 and up, a range that no distribution hands out; each is held by
-//! a lock on a file that only root can reach, for as long as the supervisor lives.
+//! Only root can become another user. The ids start at 61000, a range that no distribution uses. Each id is held by a
+//! lock on a file that only root can open, as long as the supervisor lives.
 
 use std::{
     fs::{DirBuilder, File, OpenOptions},
@@ -14,30 +14,30 @@ use std::{
 
 use super::processes;
 
-/// The first id and how many there are (systemd hands out ids from 61184 on).
-const FIRST: u32 = 61_000;
+/// The first id (systemd uses ids from 61184 on).
+const FIRST_USER: u32 = 61_000;
 const COUNT: u32 = 184;
 
-/// A user id that is ours until this is dropped.
+/// A user id that is reserved until this is dropped.
 pub(super) struct Slot {
     pub(super) user: u32,
     _lock: File,
 }
 
-/// The longest wait for an id; no run that keeps its limits lasts this long.
+/// The maximum wait for an id. No run within its limits lasts this long.
 const PATIENCE: Duration = Duration::from_secs(3600);
 
-/// Takes the first id that no run holds and under which no process runs. If all of them are taken it waits for one.
+/// Takes the first id that no run holds and that has no processes. If all are taken, waits for one.
 ///
 /// # Errors
 ///
-/// When none becomes free for an hour, the grader has ended meanwhile, or the folder of locks has another owner.
+/// If no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
 pub(super) fn take() -> io::Result<Slot> {
-    take_of(&folder()?, FIRST..FIRST + COUNT, PATIENCE)
+    take_of(&folder()?, FIRST_USER..FIRST_USER + COUNT, PATIENCE)
 }
 
-/// Returns the id of a run that has lost its supervisor. `None` if another run has it by now, which found no process
-/// under it.
+/// Returns the id of a run that has lost its supervisor. `None` if another run has taken the id, which then had no
+/// processes.
 pub(super) fn retake(user: u32) -> Option<Slot> {
     retake_in(&folder().ok()?, user)
 }
@@ -47,7 +47,7 @@ fn retake_in(folder: &Path, user: u32) -> Option<Slot> {
     lock.try_lock().is_ok().then_some(Slot { user, _lock: lock })
 }
 
-/// Takes a slot in any folder, with any ids.
+/// Takes an id from the range `users`, with locks in `folder`.
 fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
     const PAUSE: Duration = Duration::from_millis(20);
     let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
@@ -66,9 +66,9 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
     }
 }
 
-/// Returns the folder of the locks, made on first use in the first of the usual places that can be written to.
+/// Returns the folder of the locks, created on first use in the first usual place that is writable.
 fn folder() -> io::Result<PathBuf> {
-    let mut problem = io::Error::other("there is neither /run nor /tmp");
+    let mut problem = io::Error::other("neither /run nor /tmp exists");
     for base in ["/run", "/var/tmp", "/tmp"] {
         match folder_in(Path::new(base)) {
             Ok(folder) => return Ok(folder),
@@ -88,7 +88,7 @@ fn folder_in(base: &Path) -> io::Result<PathBuf> {
     if !metadata.is_dir() || metadata.uid() != 0 || metadata.mode() & 0o077 != 0 {
         return Err(io::Error::other(format!("{} must be a folder that only root can enter", folder.display())));
     }
-    // An earlier container may have made it, where nothing can be written any more.
+    // An earlier container may have created it in a place that is no longer writable.
     OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(folder.join("lock"))?;
     Ok(folder)
 }

@@ -1,4 +1,4 @@
-//! The program's standard streams, kept up to a limit.
+//! Captures the program's standard streams, up to a limit.
 
 use std::{
     io::{self, PipeReader, Read},
@@ -7,10 +7,10 @@ use std::{
 
 use crate::sys;
 
-/// The most bytes that are read in one call: a flood must not keep the supervisor from its other tasks.
+/// The maximum number of bytes that are read in one call, because a flood must not block the supervisor.
 const BYTES_PER_COPY: usize = 1 << 20;
 
-/// One captured stream.
+/// A captured stream.
 pub(super) struct CapturedStream {
     pipe: Option<PipeReader>,
     limit: u64,
@@ -19,22 +19,22 @@ pub(super) struct CapturedStream {
 }
 
 impl CapturedStream {
-    /// Captures the bytes from the pipe, up to `limit` of them.
+    /// Captures at most `limit` bytes from the pipe.
     pub(super) fn new(pipe: PipeReader, limit: u64) -> io::Result<Self> {
         sys::set_blocking(pipe.as_fd(), false)?;
         Ok(Self { pipe: Some(pipe), limit, bytes: Vec::new(), truncated: false })
     }
 
-    /// Returns the pipe, as long as it is open.
+    /// Returns the pipe while it is open.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         self.pipe.as_ref().map(AsFd::as_fd)
     }
 
-    /// Takes the bytes that have arrived. Those beyond the limit are dropped, and the stream is marked. Returns whether
-    /// any had.
+    /// Reads the bytes that have arrived. Bytes beyond the limit are dropped, and the stream is marked as truncated.
+    /// Returns whether any bytes had arrived.
     pub(super) fn take(&mut self) -> bool {
         let Some(pipe) = &mut self.pipe else { return false };
-        // Memory that is touched for the first time costs more than another call, and most programs print little.
+        // Touching memory for the first time costs more than another call, and most programs print little.
         let (mut small, mut large) = ([0; 1 << 12], Vec::new());
         let buffer = if self.truncated {
             large.resize(BYTES_PER_COPY / 16, 0);
@@ -62,8 +62,8 @@ impl CapturedStream {
         taken > 0
     }
 
-    /// Takes all that is left. Only called when no process is alive that could go on writing.
-    pub(super) fn take_rest(&mut self) {
+    /// Reads the rest of the stream. Must be called only when no process is alive that could continue to write.
+    pub(super) fn read_rest(&mut self) {
         while self.pipe.is_some() && self.take() {}
     }
 }
@@ -82,7 +82,7 @@ mod tests {
             capture.take();
             writer.write_all(b"abcdef").unwrap();
             drop(writer);
-            capture.take_rest();
+            capture.read_rest();
             assert_eq!(capture.bytes, b"abcdef"[..limit as usize]);
             assert_eq!(capture.truncated, truncated);
             assert!(capture.descriptor().is_none());

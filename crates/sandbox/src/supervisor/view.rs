@@ -1,8 +1,8 @@
-//! The files that a run can see: a root folder of its own with the files of the order, under the usual paths.
+//! The files that a run can see: a new root folder with the files of the order, under the usual paths.
 //!
-//! The places that Landlock allows (see `walls.rs`) appear here, read-only except for the working folder; nothing else
-//! of the host exists, not even by name. There is no writable place in memory (`/tmp`, `/dev/shm`), because files there
-//! would count for no process.
+//! The places that Landlock allows (see `walls.rs`) are visible, read-only except for the working folder; the host's
+//! other files are not visible, not even their names. No folder in memory is writable (`/tmp`, `/dev/shm`), because
+//! files there would count for no process.
 
 use std::{
     collections::VecDeque,
@@ -16,26 +16,26 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use super::{volatile, walls};
+use super::{memory_folder, walls};
 use crate::{
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
     wire::{self, Failure, RawBytes, RunOrder, stage},
 };
 
-/// The place where the new root is put together: a folder that every Linux has. It is in sight again once the roots
-/// have changed.
-const SITE: &str = "/proc";
-/// The old root's name beneath the new one, for as long as it is needed.
+/// The folder in which the new root is built, which every Linux has. It becomes visible again after the roots have
+/// changed.
+const BUILD_ROOT: &str = "/proc";
+/// The old root's temporary name below the new root.
 const HOST: &str = "/.host";
-/// The place at which an ordinary user's prepared root shows processes, so that its copies may.
-const WITNESS: &str = "/.processes";
-/// As many links as the kernel follows.
-const MOST_LINKS: u32 = 40;
-/// Room for the folders, links and empty files under mounts.
-const ROOM: &str = "mode=755,size=4m,nr_inodes=20k";
+/// The place at which an ordinary user's prepared root shows processes, so that its copies may show them.
+const PROC_PLACEHOLDER: &str = "/.processes";
+/// The maximum number of links on a path, the same as the kernel's.
+const MAX_LINKS: u32 = 40;
+/// Mount options with room for the folders, links and empty files under mounts.
+const ROOT_OPTIONS: &str = "mode=755,size=4m,nr_inodes=20k";
 
-/// The rights at a place.
+/// The access to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Access {
     Read,
@@ -43,18 +43,18 @@ enum Access {
     Write,
 }
 
-/// Replaces the root folder of this process, which must be alone in its mount namespace.
+/// Replaces the root folder of this process, which must be the only one in its mount namespace.
 ///
 /// # Errors
 ///
-/// The step that failed. The process then has half a root and must end.
+/// The step that failed. The process then has an incomplete root and must end.
 pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     let view = begin(order)?;
     let folder = wire::path(&order.folder);
     if order.volatile {
         let laid = view.resolve(&folder).and_then(|real| {
             let real = real.ok_or(io::ErrorKind::NotFound)?;
-            lay_out(&real, &on_host(&real), order)
+            mount_copy(&real, &on_host(&real), order)
         });
         laid.map_err(stage("put the working folder into memory"))?;
     }
@@ -64,53 +64,53 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     close_root()
 }
 
-/// Builds the view without a run's own parts, its working folder and its processes: [`complete`] adds them to a copy.
+/// Builds the view without the run's working folder and processes; [`complete`] adds them to a copy.
 ///
 /// # Errors
 ///
-/// As for [`build`].
+/// The errors of [`build`].
 pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     begin(order)?;
     hide_own(order, Path::new("/"))?;
     if sys::user() != 0 {
-        // The kernel lets an ordinary user show processes only where others are in sight.
-        std::fs::create_dir(WITNESS).map_err(stage("make /proc"))?;
-        mounts::mount(c"proc", &text(Path::new(WITNESS))?, c"", false).map_err(stage("mount /proc"))?;
+        // The kernel lets an ordinary user show processes only if others are visible.
+        std::fs::create_dir(PROC_PLACEHOLDER).map_err(stage("make /proc"))?;
+        mounts::mount(c"proc", &text(Path::new(PROC_PLACEHOLDER))?, c"", false).map_err(stage("mount /proc"))?;
     }
     leave_host()
 }
 
-/// Adds a run's own parts to a copy of a prepared root: a working folder with the contents of the open one and these
-/// files, and its processes. The place of the folder exists.
+/// Adds the run's parts to a copy of a prepared root: a working folder with the contents of `folder` and `files`, and
+/// the run's processes. The place of the folder must exist.
 ///
 /// # Errors
 ///
-/// As for [`build`].
+/// The errors of [`build`].
 pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBytes, Vec<u8>)]) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user() != 0 {
-        mounts::detach(&text(Path::new(WITNESS))?).map_err(stage("leave other processes"))?;
+        mounts::detach(&text(Path::new(PROC_PLACEHOLDER))?).map_err(stage("leave other processes"))?;
     }
     let real = wire::path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
-    lay_out(&real, &from, order)
-        .and_then(|()| volatile::add(&real, files))
+    mount_copy(&real, &from, order)
+        .and_then(|()| memory_folder::add(&real, files))
         .map_err(stage("put the working folder into memory"))?;
     hide_own(order, &real)?;
     close_root()
 }
 
-/// Returns a new root with all that is outside the working folder, and that folder unless it is in memory.
+/// Returns a new root with all visible files outside the working folder, and with that folder unless it is in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
-    mounts::keep_to_ourselves().map_err(stage("keep mounts to itself"))?;
-    let (site, room) = (text(Path::new(SITE))?, text(Path::new(ROOM))?);
+    mounts::make_mounts_private().map_err(stage("keep mounts to itself"))?;
+    let (site, room) = (text(Path::new(BUILD_ROOT))?, text(Path::new(ROOT_OPTIONS))?);
     mounts::mount(c"tmpfs", &site, &room, false).map_err(stage("make a root folder"))?;
-    let old = PathBuf::from(format!("{SITE}{HOST}"));
+    let old = PathBuf::from(format!("{BUILD_ROOT}{HOST}"));
     std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
     mounts::change_root(&site, &text(&old)?).map_err(stage("change the root folder"))?;
     let mut view = FileView { placed: Vec::new() };
-    let mut readable = walls::in_sight(order);
+    let mut readable = walls::visible_paths(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
         .into_iter()
@@ -123,7 +123,7 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     }
     let folders = walls::LIBRARIES.map(PathBuf::from);
     for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
-        // Only the links on the way: their targets are among the executable files, or were exchanged meanwhile.
+        // Only the links on the path are created; their targets are among the executable files, or were replaced.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
@@ -133,13 +133,13 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     Ok(view)
 }
 
-/// Covers the grader's own files and folders beneath a folder with empty ones, if they are visible.
+/// Covers the grader's own files and folders below `beneath` with empty ones, if they are visible.
 fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
     if own.is_empty() {
         return Ok(());
     }
-    // The sample may be graded in its own place, to show that all works.
+    // The sample may be graded at its own path, to demonstrate grading.
     let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
     for path in own.iter().filter(|path| **path != program) {
         hide(path).map_err(stage("hide the grader's own files"))?;
@@ -147,7 +147,7 @@ fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Lays nothing over a file or folder that is in sight.
+/// Covers a visible file or folder with an empty one.
 fn hide(path: &Path) -> io::Result<()> {
     let Ok(metadata) = path.symlink_metadata() else { return Ok(()) };
     if metadata.is_dir() {
@@ -158,15 +158,15 @@ fn hide(path: &Path) -> io::Result<()> {
     mounts::attach(nothing.as_fd(), &c_string(path)?)
 }
 
-/// Shows the run's processes.
+/// Makes the run's processes visible.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
     mounts::mount(c"proc", c"/proc", shown, false).map_err(stage("mount /proc"))
 }
 
-/// Hides `/proc` from this process except its own entry, in a folder that counts no process: the root of a `/proc` has
-/// a link for every process of the machine. If no file rules guard that entry, only some of its files are shown: the
-/// kernel would take `/proc/self/exe`, the grader, for the program's loader.
+/// Hides `/proc` from this process except its own entry, in a plain folder, because the link count of `/proc` reveals
+/// the number of processes. If no file rules protect the entry, only some of its files are visible, because the kernel
+/// would take `/proc/self/exe`, the grader, for the program's loader.
 pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
     let own = std::process::id().to_string();
     let place = Path::new("/proc").join(&own);
@@ -202,12 +202,12 @@ fn close_root() -> Result<(), Failure> {
     mounts::restrict_at(c"/", READ_ONLY).map_err(stage("close the root folder"))
 }
 
-/// Puts a file system in memory at the path, with a copy of another folder's contents.
-fn lay_out(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
+/// Mounts a file system in memory at the path, with a copy of another folder's contents.
+fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let options = CString::new(volatile::options(order)).map_err(io::Error::other)?;
+    let options = CString::new(memory_folder::options(order)).map_err(io::Error::other)?;
     mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.tools)?;
-    volatile::copy(from, folder)
+    memory_folder::copy(from, folder)
 }
 
 fn text(path: &Path) -> Result<CString, Failure> {
@@ -218,21 +218,21 @@ fn c_string(path: &Path) -> io::Result<CString> {
     CString::new(path.as_os_str().as_bytes()).map_err(io::Error::other)
 }
 
-/// Returns a path of the host, as it is reached while the view is made.
+/// Returns the path at which a file of the host is reached while the view is built.
 fn on_host(path: &Path) -> PathBuf {
     let mut host = OsString::from(HOST);
     host.push(path);
     host.into()
 }
 
-/// The new root while it is made.
+/// The new root while it is built.
 struct FileView {
     placed: Vec<(PathBuf, Access)>,
 }
 
 impl FileView {
-    /// Makes the file or folder at the path visible under the same path. A path that the host lacks is left out, and
-    /// its processes, too: `/proc` is made anew.
+    /// Makes the file or folder at the path visible under the same path. Paths that the host lacks, and its processes,
+    /// are left out: `/proc` is created separately.
     fn mount_place(&mut self, path: &Path, access: Access) -> io::Result<()> {
         let Some(real) = self.resolve(path)? else { return Ok(()) };
         if real == Path::new("/") {
@@ -246,7 +246,7 @@ impl FileView {
             std::fs::create_dir_all(&real)?;
         } else {
             std::fs::create_dir_all(real.parent().unwrap_or(Path::new("/")))?;
-            // Beneath a folder that is in sight already the file is there.
+            // The file is already visible below a visible folder.
             if !real.exists() {
                 File::create(&real)?;
             }
@@ -263,13 +263,13 @@ impl FileView {
         Ok(())
     }
 
-    /// Returns whether the path is in sight already, with the same access.
+    /// Returns whether the path is already visible, with the same access.
     fn shows(&self, path: &Path, access: Access) -> bool {
         self.placed.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
     }
 
-    /// Returns the path without links; each link on the way is made in the new root as well. `None` when the host has
-    /// nothing there that we may see.
+    /// Returns the path without links. Each link on the path is also created in the new root. `None` if the host has no
+    /// accessible file there.
     fn resolve(&self, path: &Path) -> io::Result<Option<PathBuf>> {
         let mut real = PathBuf::from("/");
         let mut left: VecDeque<OsString> = names(path);
@@ -287,7 +287,7 @@ impl FileView {
             }
             links += 1;
             let Ok(target) = std::fs::read_link(on_host(&next)) else { return Ok(None) };
-            if links > MOST_LINKS {
+            if links > MAX_LINKS {
                 return Ok(None);
             }
             if next.symlink_metadata().is_err() {
@@ -305,7 +305,7 @@ impl FileView {
     }
 }
 
-/// Returns the parts of a path that lead somewhere.
+/// Returns the components of a path, without empty ones and `.`.
 fn names(path: &Path) -> VecDeque<OsString> {
     path.components()
         .filter_map(|part| match part {

@@ -1,6 +1,6 @@
-//! The Landlock rules: they name the files that the program may reach, and forbid signals to processes outside.
+//! The Landlock rules name the files that the program may access, and forbid signals to processes outside.
 //!
-//! Rules name open descriptors. They are therefore made before the user changes, and come into force in the child after
+//! Rules refer to open descriptors. They are therefore created before the user changes, and enforced in the child after
 //! it has become another user.
 
 use std::{
@@ -21,19 +21,19 @@ use landlock::{
 };
 
 use crate::{
-    own::{self, AllowedPath},
+    own_files::{self, AllowedPath},
     sys::{self, OFlags},
     wire::{self, RunOrder},
 };
 
-/// The newest rules we know and have tried; older kernels enforce a part of them, which [`LayerReport`] names.
+/// The newest supported and tested rules. Older kernels enforce a part of them, which [`LayerReport`] names.
 ///
 /// [`LayerReport`]: crate::LayerReport
 const NEWEST: ABI = ABI::V6;
 
 /// The folders of shared libraries, loaders and the libraries of interpreters.
 pub(super) const LIBRARIES: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
-/// Files in which loaders and runtimes read about the machine: its libraries, its processors and its time zone.
+/// Files from which loaders and runtimes read about the machine: its libraries, its processors and its time zone.
 const MACHINE: [&str; 6] = [
     "/etc/ld.so.cache",
     "/etc/ld.so.preload",
@@ -42,17 +42,18 @@ const MACHINE: [&str; 6] = [
     "/sys/devices/system/cpu/possible",
     "/sys/devices/system/cpu/present",
 ];
-/// Files in which runtimes read about their own process.
+/// Files from which runtimes read about their own process.
 const OWN_FILES: [&CStr; 9] =
     [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
-/// Folders there that it may list: the threads' own numbers, which some runtimes count, and its descriptors.
+/// Folders of the process's own entry that it may list: its threads' numbers, which some runtimes count, and its
+/// descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
-/// Returns the parts of a process's own entry that are shown where no file rules guard it.
+/// Returns the parts of a process's own entry that are visible if no file rules protect it.
 pub(super) fn unguarded_entry() -> impl Iterator<Item = &'static str> {
     OWN_FILES.into_iter().chain([c"fd"]).filter_map(|name| name.to_str().ok())
 }
 
-/// Devices without an inside.
+/// Devices without side effects.
 pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
 /// The system's programs, for compilers and build tools.
 const TOOLS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
@@ -68,19 +69,19 @@ const SETTINGS: [&str; 8] = [
     "/etc/os-release",
 ];
 
-/// Returns every path outside the working folder that has to be in sight for the order's program, devices aside.
-pub(super) fn in_sight(order: &RunOrder) -> Vec<PathBuf> {
+/// Returns every path outside the working folder that must be visible to the order's program, except devices.
+pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
     let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
     let fixed = LIBRARIES.into_iter().chain(MACHINE).chain(tools.concat()).map(PathBuf::from);
     fixed.chain(named).collect()
 }
 
-/// The places outside the working folder that the program may reach, open, with its rights there.
+/// The places outside the working folder that the program may access, opened, with its rights.
 pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
 impl Places {
-    /// Opens the places of an order. Paths that this host lacks are left out.
+    /// Opens the places of an order. Missing paths are left out.
     pub(super) fn for_order(order: &RunOrder) -> Self {
         let read = AccessFs::ReadFile | AccessFs::ReadDir;
         let execute = read | AccessFs::Execute;
@@ -90,14 +91,14 @@ impl Places {
         for path in MACHINE {
             places.add(Path::new(path), read);
         }
-        // The kernel executes the loader, and nothing else beneath: the filter sees to that.
+        // The kernel executes the loader. The filter prevents any other execution below.
         let libraries: BTreeSet<PathBuf> =
             LIBRARIES.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect();
         for folder in &libraries {
             places.add_around(folder, execute, own);
         }
         for path in DEVICES {
-            // Bytes that are written to shared mappings of /dev/zero would be memory that no counter shows.
+            // Bytes written to shared mappings of /dev/zero would be memory that no counter shows.
             let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
             places.add(Path::new(path), access | AccessFs::ReadFile);
         }
@@ -118,16 +119,16 @@ impl Places {
         places
     }
 
-    /// Moves the files to numbers that no program may have, so that they do not count for the limit of a child. `None`
-    /// if this process itself may not have as many.
-    pub(super) fn out_of_the_way(self) -> Option<Self> {
+    /// Moves the files to descriptor numbers that no program may have, so that they do not count for the limit of a
+    /// child. `None` if this process itself may not have as many.
+    pub(super) fn with_high_numbers(self) -> Option<Self> {
         const FIRST: u32 = 800;
         let moved =
             self.0.into_iter().map(|(opened, access)| Some((sys::duplicate_from(opened.as_fd(), FIRST).ok()?, access)));
         moved.collect::<Option<_>>().map(Self)
     }
 
-    /// Adds the place with as much of the access as makes sense there.
+    /// Adds the place with the applicable part of the access.
     fn add(&mut self, path: &Path, access: BitFlags<AccessFs>) {
         let Ok(opened) = at_place(path) else { return };
         let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
@@ -135,9 +136,9 @@ impl Places {
         self.0.push((opened.into(), access));
     }
 
-    /// Adds a place like [`Places::add`], but without the grader's own files beneath the path.
+    /// Adds a place like [`Places::add`], but without the grader's own files below the path.
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
-        for allowed in own::around(path, own) {
+        for allowed in own_files::around(path, own) {
             match allowed {
                 AllowedPath::Whole(path) => self.add(&path, access),
                 AllowedPath::Listing(path) => self.add(&path, access & AccessFs::ReadDir),
@@ -146,7 +147,7 @@ impl Places {
     }
 }
 
-/// Returns the file at the path, open for being named only.
+/// Returns the file at the path, opened only as a reference (`O_PATH`).
 fn at_place(path: &Path) -> io::Result<File> {
     File::options().read(true).custom_flags(libc::O_PATH).open(path)
 }
@@ -163,7 +164,7 @@ pub(super) fn rules(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -
 }
 
 /// Adds the files of its own entry in `/proc` that the process may read, one by one, because the entry also shows
-/// sockets, mounts and groups of the host and which pages of a file are in memory. Only the child itself can do this.
+/// sockets, mounts and groups of the host, and which pages of a file are in memory. Only the child itself can do this.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
     let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
@@ -175,11 +176,11 @@ pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCr
     Ok(ruleset)
 }
 
-/// Puts the rules into force for this process and all that come from it.
+/// Enforces the rules for this process and its descendants.
 ///
 /// # Errors
 ///
-/// Also when the kernel accepted them without enforcing any.
+/// Also if the kernel accepted the rules without enforcing any.
 pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
     let status = ruleset.restrict_self().map_err(from_ruleset_error)?;
     if status.ruleset == RulesetStatus::NotEnforced {
@@ -198,7 +199,7 @@ fn version(number: u8) -> ABI {
     [NEWEST, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST)
 }
 
-/// Denies everything that the running kernel can deny unless a rule allows it.
+/// Returns a ruleset that denies everything that the running kernel can deny, unless a rule allows it.
 fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     let mut ruleset = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
@@ -214,8 +215,8 @@ fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     ruleset.create().map_err(from_ruleset_error)
 }
 
-/// Returns the rights in the program's folder: it may make, change and remove files and folders. Only build tools may
-/// link to other places, make special files and execute.
+/// Returns the rights in the program's folder, which include creating, changing and removing files and folders. Only
+/// build tools may link to other places, create special files and execute.
 fn in_folder(tools: bool) -> BitFlags<AccessFs> {
     let submission = AccessFs::ReadFile
         | AccessFs::ReadDir

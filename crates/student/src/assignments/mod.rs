@@ -1,4 +1,4 @@
-//! Code that is bound to an assignment of the course, one folder each: the catalogue of mistakes, formulas as data,
+//! Code that depends on an assignment of the course, one folder each: the catalogue of mistakes, formulas as data,
 //! probe scenes.
 pub mod all;
 pub mod rows;
@@ -10,11 +10,11 @@ use fosssim_model::{
     scene::{self, Scene},
 };
 
-/// Returns the probe scenes of an assignment, each with a name that can be a file's. They make every part of a
-/// program's work visible, together with the scenes of its suite.
+/// Returns the probe scenes of an assignment, each with a name that is valid for a file. Together with the scenes of
+/// the suite they show every part of a program's work.
 ///
 /// # Panics
-/// When a scene is not sound; a test reads them all.
+/// If a scene is not valid; a test reads all of them.
 #[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     let read = |&(name, text): &(&str, &str)| {

@@ -1,65 +1,65 @@
-//! Everything that a student's program can do differently: one row each.
+//! Everything that a student's program can do differently, one row each.
 //!
-//! Three kinds: `wrong` programs misunderstand something and leave another trace; `variant`s are correct except for
-//! round-off or a positive factor; `hostile` ones try the harness, not the physics. The place in the simulation where a
+//! There are three kinds of rows: `wrong` programs have a mistake and write another trace; `variant`s are correct
+//! except for round-off or a positive factor; `hostile` programs attack the grader. The place in the simulation where a
 //! mistake is made calls [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces
-//! are in [`t2m2`](super::t2m2), those of forces, integrators and what follows from them in [`states`](super::states).
+//! are in [`t2m2`](super::t2m2), those of forces, integrators and their results in [`states`](super::states).
 pub use fosssim_findings::explanation::Area;
 use fosssim_model::sim::PairKind;
 
 fosssim_num::closed_set! {
-    /// Whether a row is a mistake.
+    /// The kind of a row.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum RowKind {
-        /// A mistake: the result is wrong.
+        /// A mistake, with a wrong result.
         Wrong = "wrong",
-        /// No mistake: other arithmetic, the same mathematics.
+        /// A correct program with other arithmetic and the same mathematics.
         Variant = "variant",
         /// A program that harms itself or others.
         Hostile = "hostile",
     }
 }
 
-/// One row of a table, whose mistakes are of this type.
+/// One row of a table whose mistakes have type `M`.
 #[derive(Debug, Clone, Copy)]
 pub struct RowOf<M> {
-    /// The mistake, for the program.
+    /// The mistake as a value for programs.
     pub mistake: M,
-    /// The mistake, for the user.
+    /// The mistake's id for users.
     pub id: &'static str,
-    /// Wrong, correct, or hostile.
+    /// Whether the row is wrong, correct or hostile.
     pub kind: RowKind,
-    /// The place where it is made.
+    /// The area of the assignment in which the mistake is made.
     pub area: Area,
-    /// The mistake in one sentence, as a teacher would say it: no formula, no symbol, no number, so that it gives
-    /// nothing away.
+    /// The mistake in one sentence, as a teacher would say it, without formulas, symbols or numbers, so that it does
+    /// not reveal the solution.
     pub what: &'static str,
-    /// The exact form: what is used and what must be used instead, in the assignment's notation.
+    /// The exact form: the wrong and the right expression, in the assignment's notation.
     pub term: &'static str,
 }
 
 impl<M> RowOf<M> {
-    /// Returns the row with this mistake.
+    /// Returns the row with its mistake replaced by `mistake`.
     #[must_use]
     pub fn with_mistake<N>(self, mistake: N) -> RowOf<N> {
         let Self { id, kind, area, what, term, .. } = self;
         RowOf { mistake, id, kind, area, what, term }
     }
 
-    /// Returns the sentence about it, with the part of the program in front.
+    /// Returns the sentence about the mistake, preceded by the part of the program.
     #[must_use]
     pub fn sentence(&self) -> String {
         format!("{}: {}", self.place(), self.what)
     }
 
-    /// Returns the only kind of pair for which the mistake is made.
+    /// Returns the kind of pair for which the mistake is made, if there is only one.
     #[must_use]
     pub fn kind_of_pair(&self) -> Option<PairKind> {
         PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))
     }
 
-    /// Returns the part of the program in which the mistake is made: the kind of pair where it is made for one kind
-    /// only, else the part of the assignment.
+    /// Returns the part of the program in which the mistake is made: the kind of pair if there is only one, otherwise
+    /// the area of the assignment.
     #[must_use]
     pub fn place(&self) -> &'static str {
         match (self.id.split_once('-'), self.area) {
@@ -71,8 +71,8 @@ impl<M> RowOf<M> {
     }
 }
 
-/// Returns the rows with their sentences, which `text` has in the order of the rows. Each row has four lines there: its
-/// id, its two sentences, and an empty line. The compiler names the row whose id does not come next.
+/// Returns the rows with their sentences from `text`, which has four lines per row, in order: its id, its two
+/// sentences, and an empty line. The compiler reports the row whose id is not next.
 pub(super) const fn with_sentences<M: Copy, const N: usize>(
     mut rows: [RowOf<M>; N],
     text: &'static str,
@@ -91,7 +91,7 @@ pub(super) const fn with_sentences<M: Copy, const N: usize>(
     rows
 }
 
-/// Returns the first line of a text, and what follows it.
+/// Returns the first line of a text, and the rest.
 const fn split_line(text: &str) -> (&str, &str) {
     let mut end = 0;
     while text.as_bytes()[end] != b'\n' {
@@ -109,8 +109,8 @@ const fn are_equal(one: &str, other: &str) -> bool {
 }
 
 /// A table of rows, and the type of its mistakes: name of the type, name of the table, further variants that hold
-/// mistakes of other tables, and the type of edits. A group may name a file, which has the sentences of its rows and of
-/// the rows behind them. A mistake of a formula has its edit in brackets, from which the student's program follows.
+/// mistakes of other tables, and the type of edits. A group may name a file with the sentences of its rows and of the
+/// following rows. A mistake in a formula has its edit in brackets, from which the student's program is derived.
 macro_rules! rows {
     (
         $(#[$doc:meta])* $type:ident $table:ident [$($of:ident $other:ident),*] [$($edits:ident)?]
@@ -124,7 +124,7 @@ macro_rules! rows {
         }
 
         impl $type {
-            /// Returns the part of the assignment to which it belongs.
+            /// Returns the area of the assignment to which the mistake belongs.
             #[must_use]
             pub const fn area(self) -> $crate::assignments::rows::Area {
                 match self {
@@ -152,7 +152,7 @@ macro_rules! rows {
     (@ $type:ident [] $($rest:tt)*) => {};
     (@ $type:ident [$edits:ident] $($mistake:ident $([$edit:expr])?,)*) => {
         impl $type {
-            /// Returns what it changes in the formulas of a pair, if that is where it is made.
+            /// Returns the mistake's change of a pair's formulas, if it has one.
             #[must_use]
             pub fn edit(self) -> Option<$edits> {
                 match self {

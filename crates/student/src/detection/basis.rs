@@ -1,9 +1,9 @@
-//! Correct programs whose coefficients take a detour: by way of Bernstein's basis, or of values at some times.
+//! Correct programs that compute coefficients indirectly: through the Bernstein basis, or from values at several times.
 use fosssim_num::vector::Vec2;
 
 use fosssim_model::sim::PointMotion;
 
-/// Returns a power basis list (highest power first) in Bernstein's basis over the step, and back.
+/// Converts a power basis list (highest power first) to the Bernstein basis over the step, and back.
 pub fn through_bernstein(list: &[f64]) -> Vec<f64> {
     let degree = list.len() - 1;
     let power = |k: usize| list[degree - k];
@@ -25,8 +25,8 @@ fn sign(exponent: usize) -> f64 {
     if exponent.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
-/// Returns the coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` times
-/// that divide the step evenly, by Newton's divided differences.
+/// Returns the coefficients (highest power first) of the polynomial with the values of `value` at `degree + 1` evenly
+/// spaced times of the step, by Newton's divided differences.
 fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "small whole numbers")]
     let times: Vec<f64> = (0..=degree).map(|k| k as f64 / degree as f64).collect();
@@ -79,7 +79,7 @@ fn overlap([one, two, three]: &[PointMotion; 3], square: f64, t: f64) -> f64 {
     square * along.dot(&along) - cross * cross
 }
 
-/// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach stays as supplied.
+/// Returns overlap, alpha > 0 and alpha < 1 of a particle and an edge, from values; the approach is the supplied one.
 pub fn particle_edge(bodies @ [one, two, three]: &[PointMotion; 3], square: f64) -> [Vec<f64>; 3] {
     [
         overlap_from_values(bodies, square),

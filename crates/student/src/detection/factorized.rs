@@ -1,7 +1,7 @@
-//! The particle-edge polynomials as products of three quadratics: with `w = x1 - x2` and `e = x3 - x2`, both linear in
-//! t, the cross product `q = e x w`, the squared length `g = e.e`, and nothing else.
+//! The particle-edge polynomials as products of three quadratics. With `w = x1 - x2` and `e = x3 - x2`, both linear in
+//! t, they need only the cross product `q = e x w` and the squared length `g = e.e`.
 //!
-//! The quartic is `R^2 g - q^2`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
+//! The quartic is `R² g - q²`; the mathematically right quintic is `-q (2 q' g - q g') / 2`.
 use fosssim_num::vector::Vec2;
 
 use fosssim_model::sim::PointMotion;
@@ -34,7 +34,7 @@ fn derivative(p: &[f64; 3]) -> [f64; 2] {
     [2.0 * p[0], p[1]]
 }
 
-/// Returns the overlap with the line, `square` being the squared sum of the radii.
+/// Returns the overlap with the line; `square` is the squared sum of the radii.
 pub fn quartic(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let mut result: Vec<f64> = product(&q, &q).iter().map(|coefficient| -coefficient).collect();

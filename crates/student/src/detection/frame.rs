@@ -1,33 +1,33 @@
-//! Correct programs that compute in other coordinates than the scene's: nothing that happens depends on them.
+//! Correct programs that compute in other coordinates than the scene's, which changes no event.
 use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Handover];
 
-/// The origin of a program whose coordinates are those of the scene with another origin.
+/// The origin of a program whose coordinates are the scene's with another origin.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
-/// Cosine and sine of the angle by which a program turns its coordinates: 3-4-5 would be too good, its products are
-/// often exact.
+/// The cosine and sine of the angle by which a program rotates its coordinates. The angle of 3-4-5 would not do,
+/// because its products are often exact.
 const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 
-/// A program's coordinates.
+/// The coordinate axes in which a program computes.
 #[derive(Clone, Copy)]
 pub enum Axes {
-    /// The coordinates of the scene.
+    /// The axes of the scene.
     Scene,
-    /// Another origin.
+    /// Axes with another origin.
     Shifted,
-    /// Another origin in each detection, which moves with the first particle.
+    /// Axes with another origin in each detection, which moves with the first particle.
     Comoving,
-    /// Other directions of the axes.
+    /// Axes with other directions.
     Rotated,
 }
 
 impl Axes {
-    /// Returns the coordinates that this student computes in.
+    /// Returns the axes in which a student computes.
     pub fn for_student(student: Student) -> Self {
         match student.mistake_in(HERE) {
             Some(Mistake::FrameShifted) => Self::Shifted,
@@ -37,7 +37,7 @@ impl Axes {
         }
     }
 
-    /// Returns a point of the scene in these coordinates; `particle` is where the pair's first particle is at the same
+    /// Converts a point of the scene to these axes; `particle` is the position of the pair's first particle at the same
     /// time.
     pub fn point(self, point: Vec2, particle: Vec2) -> Vec2 {
         match self {
@@ -48,7 +48,7 @@ impl Axes {
         }
     }
 
-    /// Returns a difference of points in these coordinates.
+    /// Converts a difference of points to these axes.
     pub fn direction(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = TURN;
         match self {
@@ -57,7 +57,7 @@ impl Axes {
         }
     }
 
-    /// Returns the difference of points in the scene's coordinates.
+    /// Converts a difference of points back to the scene's axes.
     pub fn turn_back(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = TURN;
         match self {

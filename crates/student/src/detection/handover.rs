@@ -1,14 +1,15 @@
-//! The last thing that happens to coefficients before the root finder gets them.
+//! The last step before coefficients are passed to the root finder.
 use fosssim_num::polynomial::Polynomial;
 
 use crate::{Area, Mistake, author::Student, objects::Object, rounding::single};
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Handover];
 
-/// Hands the polynomials of one pair over, small leading coefficients dropped: as they are, or as this student does.
-pub fn hand_over(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
-    // A detection that was left empty hands nothing over, whatever else the student gets wrong.
+/// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's
+/// mistake.
+pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
+    // A detection that was left empty passes nothing on, whatever the student's other mistakes are.
     if lists.is_empty() {
         return Vec::new();
     }
@@ -47,7 +48,7 @@ fn factor(student: Student, object: Object) -> Option<f64> {
     Some(factor)
 }
 
-/// Divides by the leading coefficient with its sign, which turns the inequality round where it is negative.
+/// Divides by the leading coefficient with its sign, which reverses the inequality if it is negative.
 fn divide_by_leading(list: &mut [f64]) {
     let leading = list[0];
     if leading != 0.0 {

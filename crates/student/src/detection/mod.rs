@@ -1,6 +1,6 @@
-//! Continuous-time detection of one pair: its polynomials, the time of impact, the contact vector, the decision.
+//! Continuous-time detection of one pair: its polynomials, the time of impact, the contact vector and the decision.
 //!
-//! The root finder is the one that the course supplies (`num::first_time`); everything else is the student's.
+//! The root finder is the one supplied by the course (`num::first_time`); everything else is the student's.
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{
     first_time::first_time_counted,
@@ -12,7 +12,7 @@ use crate::{
     Area, Mistake,
     assignments::t2m2::{Inputs, Subject},
     author::Student,
-    logged::logged_polynomial,
+    logged_polynomials::logged_polynomial,
     objects::{Contact, Object, Pair},
     rounding::single,
     step_failure::StepFailure,
@@ -24,22 +24,22 @@ mod basis;
 mod factorized;
 mod frame;
 mod handover;
-mod normalized;
+mod normalization;
 mod particle_edge;
 mod particle_half_plane;
 mod particle_particle;
 mod quintic;
-mod wide;
+mod wide_numbers;
 
 use frame::Axes;
 use particle_edge::alpha;
 
 fosssim_model::drops_leading!();
 
-/// The parts of the assignment whose mistakes are made in contact vectors.
+/// The areas whose mistakes are made in contact vectors.
 const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
 
-/// The mistakes that reject a contact whose time is right.
+/// The mistakes that reject a contact with a right time.
 const REJECTIONS: &[Mistake] = &[
     Mistake::DecisionOverlapAtEnd,
     Mistake::DecisionOverlapAtStart,
@@ -51,16 +51,16 @@ const REJECTIONS: &[Mistake] = &[
     Mistake::DecisionFixedEdges,
 ];
 
-/// The steps that the root searches of one pair usually take at most.
+/// The usual maximum number of steps in the root searches of one pair.
 const USUAL_SEARCH: u64 = 128;
 
-/// The steps after which a search without end is given up (`num::rpoly`).
+/// The number of steps after which an endless search is stopped (`num::rpoly`).
 const ENDLESS_SEARCH: u64 = 1000;
 
 /// The areas of the mistakes in the formulas of each kind of pair.
 const FORMULAS: [Area; 3] = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane];
 
-/// Returns how a pair moves, as this student's program reads it from its lists.
+/// Returns the motion of a pair, as this student's program reads it from its lists.
 fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> PairMotion {
     let frame = axes_of(world.student, pair);
     let (student, all) = (world.student, world.scene.particles.len());
@@ -106,7 +106,7 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
     }
 }
 
-/// Returns the coefficients that have to be positive together, highest power first.
+/// Returns the polynomials that must be positive together, highest power first.
 fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let mut lists = match motion {
         PairMotion::Particles { centers, radii } => particle_particle::polynomials(student, centers, *radii),
@@ -138,8 +138,8 @@ fn contact_vector(student: Student, motion: &PairMotion, t: f64) -> Vec2 {
     }
 }
 
-/// Returns the speed at which the objects approach each other at time `t`: their relative displacement along the
-/// contact vector.
+/// Returns the speed at which the objects approach each other at time `t`, which is their relative displacement along
+/// the contact vector.
 fn closing(motion: &PairMotion, t: f64) -> f64 {
     let relative = match motion {
         PairMotion::Particles { centers: [one, two], .. } => one.shift - two.shift,
@@ -151,7 +151,7 @@ fn closing(motion: &PairMotion, t: f64) -> f64 {
     relative.dot(&contact_vector(Student::default(), motion, t))
 }
 
-/// Returns the least distance of the centers.
+/// Returns the distance at which the objects touch.
 fn reach(motion: &PairMotion) -> f64 {
     match motion {
         PairMotion::Particles { radii, .. } | PairMotion::Edge { radii, .. } => radii[0] + radii[1],
@@ -161,16 +161,16 @@ fn reach(motion: &PairMotion) -> f64 {
 
 /// The lists that a program reads at a wrong index for pairs of a kind.
 struct IndexSlip {
-    /// Positions at the particle's number, as if each had one coordinate.
+    /// Whether positions are read at the particle's number, as if each had one coordinate.
     is_single: bool,
     radius: Option<RadiusSlip>,
 }
 
 /// The index at which a radius is read.
 enum RadiusSlip {
-    /// The next particle's.
+    /// The radius of the next particle is read.
     Next,
-    /// The number of the other object.
+    /// The radius is read at the number of the other object.
     OfObject,
 }
 
@@ -192,14 +192,13 @@ impl IndexSlip {
     }
 }
 
-/// Returns whether pairs of this kind are checked on the integrator's prediction.
+/// Returns whether pairs of this kind are checked with the integrator's prediction.
 fn is_on_prediction(student: Student, kind: usize) -> bool {
     let all = [Mistake::ParticleParticlePrediction, Mistake::ParticleEdgePrediction, Mistake::HalfPlanePrediction];
     student.makes(all[kind])
 }
 
-/// Returns the coordinates for this pair. A half-plane that moves has no formulas, so the coordinates do not move along
-/// with its particle.
+/// Returns the axes for a pair. No formulas support a moving half-plane, so the axes do not move with its particle.
 fn axes_of(student: Student, pair: Pair) -> Axes {
     match (Axes::for_student(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
@@ -207,8 +206,7 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
     }
 }
 
-/// Returns the polynomials that this student's formulas give for a pair of bodies, as they are handed to the root
-/// finder.
+/// Returns the polynomials of a pair of bodies by this student's formulas, as passed to the root finder.
 #[must_use]
 pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let object = match motion {
@@ -216,11 +214,11 @@ pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
         PairMotion::Edge { .. } => Object::Edge(0),
         PairMotion::HalfPlane { .. } => Object::HalfPlane(0),
     };
-    let lists = handover::hand_over(student, object, polynomials(student, motion));
+    let lists = handover::pass_on(student, object, polynomials(student, motion));
     lists.iter().map(|list| list.coefficients().to_vec()).collect()
 }
 
-/// Checks whether a pair collides while everything moves evenly from `q_start` to `q_end`, and logs its polynomials.
+/// Checks whether a pair collides during the linear motion from `q_start` to `q_end`, and logs its polynomials.
 pub fn detect(
     world: &World,
     pair: Pair,
@@ -236,11 +234,11 @@ pub fn detect(
         return Ok(None);
     }
     let mut lists = polynomials(student, &motion);
-    normalized::normalize(student, &motion, &mut lists);
+    normalization::normalize(student, &motion, &mut lists);
     if student.makes(Mistake::ThroughBernstein) {
         lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
     }
-    let polynomials = handover::hand_over(student, pair.object, lists);
+    let polynomials = handover::pass_on(student, pair.object, lists);
     if polynomials.is_empty() {
         return Ok(None);
     }
@@ -275,7 +273,7 @@ pub fn detect(
     Ok(Some(Contact { pair, n, time }))
 }
 
-/// Returns the time of impact; the log counts what its search takes beyond the usual.
+/// Returns the time of impact; the log counts the unusual part of the search.
 fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
     let mut steps = 0;
     let found = first_time_counted(polynomials, &mut steps);
@@ -283,7 +281,7 @@ fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, S
     Ok(found?)
 }
 
-/// Returns one pass over all pairs, with no response in between.
+/// Returns the contacts of one pass over all pairs, without responses in between.
 pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) -> Result<Vec<Contact>, StepFailure> {
     let mut contacts = Vec::new();
     for pair in world.pairs() {
@@ -310,7 +308,7 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
     }
 }
 
-/// Returns whether a further test rejects the impact; some programs make such tests, and should not.
+/// Returns whether a further test rejects the impact. Some programs make such tests, which are wrong.
 fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
     let distance = |t: f64| length(contact_vector(student, motion, t));
     match (student.mistake_among(REJECTIONS), motion) {
@@ -334,7 +332,7 @@ fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
     }
 }
 
-/// Returns whether the pair's edge has two fixed ends.
+/// Returns whether both ends of the pair's edge are fixed.
 fn is_held(world: &World, pair: Pair) -> bool {
     let Object::Edge(index) = pair.object else { return false };
     let edge = world.scene.edges[index];
@@ -342,7 +340,7 @@ fn is_held(world: &World, pair: Pair) -> bool {
 }
 
 /// Returns whether the particles' paths stay far apart, judged by bounding circles. The assignment does not require
-/// this.
+/// this test.
 fn out_of_reach(motion: &PairMotion) -> bool {
     let PairMotion::Particles { centers: [one, two], radii } = motion else { return false };
     length(two.start - one.start) > radii[0] + radii[1] + length(one.shift) + length(two.shift)

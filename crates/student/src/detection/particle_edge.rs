@@ -1,4 +1,5 @@
-//! A particle and an edge (collisions.md 2): it overlaps the infinite line, between the endpoints, and approaches.
+//! A particle and an edge (collisions.md 2): the particle overlaps the infinite line, is between the endpoints, and
+//! approaches.
 use fosssim_model::sim::PointMotion;
 use fosssim_num::vector::Vec2;
 
@@ -6,14 +7,14 @@ use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
     basis, factorized, quintic,
-    wide::WideNumber,
+    wide_numbers::WideNumber,
 };
 use crate::{Area, Mistake, author::Student};
 
-/// The parts of the assignment whose variants are made in the polynomials.
+/// The areas whose variants are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
 
-/// Returns the overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic), approach (quintic), right but for
+/// Returns the overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic) and approach (quintic), right except for
 /// round-off.
 pub fn polynomials(student: Student, bodies: &[PointMotion; 3], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let variant = student.mistake_in(FORMULAS);
@@ -70,7 +71,7 @@ fn quartic([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     ]
 }
 
-/// Returns the quartic with other parentheses.
+/// Returns the quartic, with its sums associated differently.
 fn rearrange([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     vec![
         c * c - i * f,
@@ -148,7 +149,7 @@ mod tests {
         PointMotion { start: start.into(), shift: shift.into() }
     }
 
-    /// Returns integers, so that every order of evaluation is exact: an edge that turns and stretches.
+    /// Returns a turning and stretching edge with integer coordinates, so that every order of evaluation is exact.
     fn turning() -> [PointMotion; 3] {
         [body([2.0, 5.0], [3.0, -7.0]), body([0.0, 1.0], [2.0, 4.0]), body([6.0, 3.0], [-1.0, 2.0])]
     }

@@ -1,4 +1,5 @@
-//! A particle and a half-plane with point P and normal Q (collisions.md 2): it overlaps the boundary, and approaches.
+//! A particle and a half-plane with point P and normal Q (collisions.md 2): the particle overlaps the boundary, and
+//! approaches it.
 use fosssim_model::sim::PointMotion;
 use fosssim_num::vector::{Vec2, unit};
 
@@ -6,14 +7,14 @@ use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
     basis,
-    wide::WideNumber,
+    wide_numbers::WideNumber,
 };
 use crate::{Area, Mistake, author::Student};
 
-/// The parts of the assignment whose variants are made in the polynomials.
+/// The areas whose variants are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
 
-/// Returns the overlap (quadratic) and approach (linear), right but for round-off.
+/// Returns the overlap (quadratic) and approach (linear), right except for round-off.
 pub fn polynomials(student: Student, one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
     let variant = student.mistake_in(FORMULAS);
     match variant {

@@ -6,14 +6,14 @@ use super::{
     VECTORS,
     arithmetic::{self, FusedDouble},
     basis,
-    wide::WideNumber,
+    wide_numbers::WideNumber,
 };
 use crate::{Area, Mistake, author::Student};
 
-/// The parts of the assignment whose variants are made in the polynomials.
+/// The areas whose variants are made in the polynomials.
 const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
 
-/// Returns the overlap (quadratic) and approach (linear), right but for round-off.
+/// Returns the overlap (quadratic) and approach (linear), right except for round-off.
 pub fn polynomials(student: Student, centers: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let variant = student.mistake_in(FORMULAS);
     match variant {
@@ -38,7 +38,7 @@ pub fn polynomials(student: Student, centers: &[PointMotion; 2], radii: [f64; 2]
     vec![overlap, vec![-e.dot(&e), e.dot(&x)]]
 }
 
-/// Returns the quadratic, each dot product multiplied out into coordinates and added up in another order.
+/// Returns the quadratic, with each dot product expanded into coordinates and added up in another order.
 fn rearranged_overlap([one, two]: &[PointMotion; 2], reach: f64) -> Vec<f64> {
     let (x1, x2, d1, d2) = (one.start, two.start, one.shift, two.shift);
     let (dx, dy) = (d2.x - d1.x, d2.y - d1.y);

@@ -1,10 +1,10 @@
-//! The approach of a particle and an edge: the quintic that the course supplies, and what becomes of it.
+//! The approach of a particle and an edge, which is the quintic supplied by the course, and its variants.
 use super::factorized;
 use fosssim_model::sim::PointMotion;
 
 use crate::{Area, Mistake, author::Student};
 
-/// Returns the quintic, as supplied or by another way to its right coefficients.
+/// Returns the quintic, as supplied or computed in another way with the right coefficients.
 pub fn approach(student: Student, bodies: &[PointMotion; 3]) -> Vec<f64> {
     match student.mistake_in(&[Area::ParticleEdge]) {
         Some(Mistake::QuinticRight | Mistake::FactorizedAll) => factorized::quintic(bodies),
@@ -12,8 +12,8 @@ pub fn approach(student: Student, bodies: &[PointMotion; 3]) -> Vec<f64> {
     }
 }
 
-/// Returns the course's formula, term by term and in its order, its wrong cubic coefficient included unless that was
-/// put right.
+/// Returns the course's formula, term by term and in its order, with its wrong cubic coefficient unless the student has
+/// corrected it.
 fn course_formula(student: Student, [one, two, three]: &[PointMotion; 3]) -> Vec<f64> {
     let (x12, x32, x21) = (one.start - two.start, three.start - two.start, two.start - one.start);
     let d12 = one.shift - two.shift;

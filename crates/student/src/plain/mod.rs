@@ -1,12 +1,12 @@
-//! Checks whether a sentence is plain words, or gives a formula away.
+//! Checks whether a sentence uses only plain words, or contains a formula.
 //!
-//! The hint level `what` shows students what is wrong and leaves the formula to them. Its sentences are written by hand
-//! in many places; this check enforces the rule.
+//! The hint level `what` describes the fault to students and leaves the formula to them. Its sentences are written by
+//! hand in many places; this check enforces the rule.
 
-/// Names of polynomials, which the assignment gives them: they are no formulas.
+/// Names of polynomials in the assignment, which do not count as formulas.
 const NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 
-/// Returns the first piece of a formula in a sentence: a number, an operator, a product with a dot, a function's
+/// Returns the first part of a formula in a sentence: a number, an operator, a product with a dot, a function's
 /// argument, or a letter of a quantity. `None` if there are only words; `alpha > 0` and `alpha < 1` count as names.
 #[must_use]
 pub fn formula_in(sentence: &str) -> Option<String> {
@@ -38,7 +38,7 @@ const fn is_plain_alone(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }
 
-/// Returns whether a digit after this belongs to a step's number, which is a place.
+/// Returns whether a digit at this point belongs to a step's number, which is a place.
 fn is_of_step(before: &[char]) -> bool {
     let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
     before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])

@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let form = form(arguments)?;
     let scene = input::scene(&arguments.scene)?;
     let picks = picks(arguments, form, &scene.scene)?;
-    let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::FASTEST) };
+    let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::MAX_RATE) };
     // An output that can't work is reported before the work is done.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {

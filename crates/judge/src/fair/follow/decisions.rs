@@ -1,4 +1,4 @@
-//! The charges against a step's decisions and contacts.
+//! Judges a step's decisions and contacts.
 use super::Follower;
 use crate::{
     contacts::{key, logged_key},
@@ -11,17 +11,17 @@ use fosssim_model::{
 };
 use fosssim_num::vector::Vec2;
 
-/// The result of the reference's own polynomials for a pair whose logged polynomials are right, but differ.
+/// The result of the reference's own polynomials for a pair whose logged polynomials are right but different.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct OwnImpact {
     /// The objects' time of impact.
     pub time: f64,
-    /// Whether the logged polynomials have lost leading coefficients that these have.
+    /// Whether the logged polynomials have lost leading coefficients that the reference's have.
     pub lost: bool,
 }
 
 impl Follower<'_> {
-    /// Returns the decision with which the step continues: the submission's, if the trace shows it.
+    /// Returns the decision with which the step continues. It is the submission's, if the trace shows it.
     pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judged.total();
@@ -32,7 +32,7 @@ impl Follower<'_> {
         let decision = match self.pass.stage {
             Stage::Simple | Stage::ContinuousTime => self.follow(pair, by_polynomials),
             Stage::Impulses { .. } | Stage::Geometric { .. } if self.flips.contains(&call) => {
-                self.turned_round(by_polynomials)
+                self.opposite(by_polynomials)
             }
             Stage::Impulses { .. } | Stage::Geometric { .. } => by_polynomials,
         };
@@ -40,7 +40,7 @@ impl Follower<'_> {
             Some(own) if (own.time <= 1.0) != (by_polynomials.time() <= 1.0) => own.time <= 1.0,
             _ => by_polynomials.collides(),
         };
-        // A decision that is counted as wrong is not excused as well.
+        // A decision that counts as wrong is not excused in addition.
         if decision.collides() != is_expected && self.judged.total() == findings {
             self.judged.note_borderline(self.pass, pair, decision.collides());
         }
@@ -50,9 +50,9 @@ impl Follower<'_> {
         decision
     }
 
-    /// Returns the decision about a call whose logged polynomials exclude an impact, if the reference's own, which have
-    /// lost nothing, give this result.
-    pub(super) fn dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
+    /// Returns the decision about a call whose logged polynomials exclude an impact, if the reference's own
+    /// polynomials, without losses, give `by_own`.
+    pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(OwnImpact { time, lost: false });
         if self.searchable(self.place(pair).index, pair.kind.polynomials()).is_none() {
@@ -62,9 +62,9 @@ impl Follower<'_> {
         if self.prefers_own { by_own } else { Decision::Miss { time: Time::Excluded } }
     }
 
-    /// Counts decisions that lost coefficients change: their loss is no round-off, but the factor's fault. If a factor
-    /// keeps some that the course's library drops from the reference's, nothing is lost: what its root finder makes of
-    /// them is not counted.
+    /// Counts decisions that change because of lost coefficients; the factor is the cause, not round-off. If a factor
+    /// keeps coefficients that the course's library drops from the reference's polynomials, nothing is lost, and the
+    /// decision of its root finder does not count.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
         if !own.lost {
             return;
@@ -82,8 +82,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns the other of two decisions that round-off may flip.
-    fn turned_round(&self, decision: Decision) -> Decision {
+    /// Returns the opposite of a decision that round-off may flip.
+    fn opposite(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
             Decision::Miss { .. } => self.expected_polynomials().as_ref().map_or(decision, |(motion, expected)| {
@@ -94,8 +94,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns whether round-off may flip the decision of this call, or has flipped it: where right polynomials lead
-    /// the root finder to another decision than the reference's, the submission may have either.
+    /// Returns whether round-off may flip, or has flipped, the decision of a call. If right polynomials lead the root
+    /// finder to another decision than the reference's, the submission may have either.
     fn is_borderline(&self, call: usize) -> bool {
         if self.call.is_disputed {
             return true;
@@ -106,7 +106,7 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns the logged impulse that this decision is about.
+    /// Returns the logged impulse for the pair's decision.
     fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
         let index = self.contacts.about(key(pair)?).find(|index| !self.used[*index])?;
         self.used[index] = true;
@@ -134,7 +134,7 @@ impl Follower<'_> {
             }
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
-                    // Whether they collide may go either way; where and when, if they do, may not.
+                    // Round-off decides whether the pair collides, but not where and when.
                     let (known, judged) = (self.expected_polynomials(), &mut self.judged);
                     let finding =
                         contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);
@@ -147,7 +147,7 @@ impl Follower<'_> {
         }
     }
 
-    /// Counts impulses that belong to no decision.
+    /// Counts impulses without a decision.
     pub(super) fn settle_impulses(&mut self) {
         for index in 0..self.used.len() {
             if self.used[index] {

@@ -1,8 +1,8 @@
-//! The observer that follows a submission through one step, and counts what can't be followed.
+//! The observer that follows a submission through one step, and counts the differences that it cannot follow.
 //!
 //! `passes` counts detection passes, `polynomials` compares what is logged, `decisions` follows the decisions, and
-//! `at_once` skips the bounds of polynomials that are clearly right.
-mod at_once;
+//! `clearly_right` skips the bounds of polynomials that are clearly right.
+mod clearly_right;
 mod decisions;
 mod passes;
 mod polynomials;
@@ -19,7 +19,7 @@ use crate::{
     contacts::Contacts,
     finding::{Finding, FindingDetail, Part},
 };
-use at_once::Floors;
+use clearly_right::Floors;
 use decisions::OwnImpact;
 use fosssim_model::{
     scene::Collision,
@@ -27,16 +27,16 @@ use fosssim_model::{
 };
 use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial, vector::same_bits};
 
-/// The greatest number of decisions for which room is made at first.
+/// The initial capacity of the list of decisions.
 const DECISIONS: usize = 1 << 14;
 
-/// Follows one step; filled in by the simulation, read by [`super::step`].
+/// Follows one step. The simulation fills it; [`super::step`] reads it.
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
     /// The step's sensitivity to round-off, in the second comparison.
     sensitivity: Option<&'a Sensitivity>,
-    /// Decisions (by number of the call) that are reversed: borderline ones, in hybrid scenes.
+    /// The calls whose borderline decisions are reversed in hybrid scenes, by number.
     flips: &'a [usize],
     /// The judgement of the step so far.
     pub judged: StepJudgement,
@@ -45,48 +45,48 @@ pub(super) struct Follower<'a> {
     /// Calls of hybrid scenes whose decisions round-off may flip, in order (in the second comparison).
     pub borderline: Vec<usize>,
     pass: Pass,
-    /// Passes so far: before the mid record, and after it.
+    /// Passes so far, before and after the mid record.
     passes: [usize; 2],
     /// Passes in the trace; `None` if its polynomials don't fill whole passes.
     logged_passes: Option<[usize; 2]>,
-    /// The number in the end record's list of the pass's next polynomial; `None` when it is not logged.
+    /// The index of the pass's next polynomial in the end record's list; `None` if it is not logged.
     next: Option<usize>,
-    /// Particles that a response or the failsafe has moved since positions were last known.
+    /// Particles that a response or the failsafe has moved since their last known positions.
     moved: Vec<bool>,
-    /// Particles that the responses to the pass's hits are about to move, once it is over.
+    /// Particles that the responses to the pass's hits will move after the pass.
     moving: Vec<usize>,
-    /// Whether the part before the mid record, or the geometric part, has an error that its result may follow from.
+    /// Whether the part before the mid record, or the geometric part, has an error that can explain its result.
     tainted: [bool; 2],
-    /// Polynomials that were wrong of known positions in this step.
-    wrong_formulas: ByKind<[bool; PairKind::MOST_POLYNOMIALS]>,
+    /// Polynomials that were wrong at known positions in this step.
+    wrong_formulas: ByKind<[bool; PairKind::MAX_POLYNOMIALS]>,
     /// The pairs of the logged impulses.
     contacts: Contacts,
     /// Logged impulses that a decision has used.
     used: Vec<bool>,
-    /// The facts about the current call.
+    /// The data of the current call.
     call: CurrentCall,
     /// Whether any call was disputed.
     pub has_disputes: bool,
-    /// Whether such calls are decided as the reference decides them.
+    /// Whether disputed calls are decided like the reference.
     prefers_own: bool,
-    /// The floors of round-off for polynomials of the positions that the pass sees, once they are needed.
+    /// The floors of round-off for polynomials at the positions of the pass, computed on demand.
     floors: Option<Floors>,
 }
 
-/// The facts about a call between its polynomials and its decision.
+/// The data of a call between its polynomials and its decision.
 #[derive(Debug, Default)]
 struct CurrentCall {
-    /// The result of the reference's own polynomials, if the logged polynomials are right, but differ.
+    /// The result of the reference's own polynomials, if the logged polynomials are right but different.
     own: Option<OwnImpact>,
-    /// Whether the polynomials are right, and lead the root finder to another decision than the reference's.
+    /// Whether right polynomials lead the root finder to another decision than the reference's.
     is_disputed: bool,
-    /// Whether the polynomials are right, nothing was lost, and those that were logged exclude an impact.
+    /// Whether the polynomials are right and complete, and the logged ones exclude an impact.
     misses_logged: bool,
     /// The motion of the objects.
     seen: Option<SeenCall>,
 }
 
-/// The motion of the objects of a call. Their expected polynomials follow from it, and are seldom needed after the
+/// The motion of the objects of a call. The expected polynomials are computed from it, and are rarely needed after the
 /// comparison.
 #[derive(Debug, Clone, Copy)]
 struct SeenCall {
@@ -96,7 +96,7 @@ struct SeenCall {
 }
 
 impl<'a> Follower<'a> {
-    /// Follows the step that `records` hold.
+    /// Creates an observer of the step in `records`.
     pub fn new(
         context: &'a Context<'a>,
         records: Records<'a>,
@@ -133,15 +133,15 @@ impl<'a> Follower<'a> {
         follower
     }
 
-    /// Decides calls as the reference does where right polynomials lead the root finder to other decisions.
+    /// Decides disputed calls like the reference.
     pub fn preferring_own(mut self) -> Self {
         self.prefers_own = true;
         self
     }
 
-    /// Returns the logged polynomials of a call, if their search is known to end.
-    fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MOST_POLYNOMIALS]> {
-        let mut found = [Polynomial::default(); PairKind::MOST_POLYNOMIALS];
+    /// Returns the logged polynomials of a call, if their root search certainly ends.
+    fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MAX_POLYNOMIALS]> {
+        let mut found = [Polynomial::default(); PairKind::MAX_POLYNOMIALS];
         for (number, polynomial) in found[..count].iter_mut().enumerate() {
             let logged = self.records.end.polynomials.get(index + number);
             *polynomial = contact::is_searchable(logged).then(|| Polynomial::untrimmed(logged))?;
@@ -166,7 +166,7 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Compares the states at the end of the step, with pairs left out where these explain the trace's.
+    /// Compares the states at the end of the step. Pairs that explain the trace's state are left out.
     fn settle_states(&mut self, own: &State) {
         let Records { frame, before, end, .. } = self.records;
         let tolerances = Tolerances::from_context(self.context, own, self.sensitivity.map(|known| &known.end));
@@ -217,7 +217,7 @@ impl Observer for Follower<'_> {
                 particles.for_each(|particle| self.moved[particle] = true);
                 self.floors = None;
             }
-            // A round's responses come behind its last detection.
+            // A round's responses follow its last detection.
             Stage::Impulses { .. } => self.moving.extend(particles),
             Stage::Simple | Stage::Geometric { .. } => {}
         }
@@ -246,7 +246,7 @@ impl Steer for Follower<'_> {
         if same {
             self.judged.same[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
-                // Should the decision be disputed, it must be known how far round-off may reach.
+                // If the decision is disputed, the range of round-off must be known.
                 let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
                 self.call.seen = Some(SeenCall { motion, has_right_approach: false });
             }
@@ -260,7 +260,7 @@ impl Steer for Follower<'_> {
             let lengths = || polynomials.iter().enumerate().map(|(k, own)| (own.coefficients().len(), logged(k).len()));
             let differ = at_once[..count].contains(&None) && lengths().any(|(own, logged)| logged != own);
             self.judged.lost += u64::from(differ);
-            // The reference's own are searched then, which has to end, too.
+            // In this case the root search must also end for the reference's own polynomials.
             self.call.misses_logged = !differ
                 && polynomials.iter().all(|own| contact::is_searchable(own.coefficients()))
                 && exclusion_of((0..count).map(logged)).is_some();
@@ -282,7 +282,7 @@ impl Steer for Follower<'_> {
             self.call.is_disputed = (time <= 1.0) != (other <= 1.0);
             self.has_disputes |= self.call.is_disputed;
             if self.call.is_disputed && self.prefers_own || motion.is_moment(time, other) {
-                // Round-off is all that the submission's own time would bring.
+                // The submission's own time would change only round-off.
                 return;
             }
         }
@@ -291,7 +291,7 @@ impl Steer for Follower<'_> {
     }
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
-        let decision = if self.call.misses_logged { self.dispute(pair, decision) } else { decision };
+        let decision = if self.call.misses_logged { self.resolve_dispute(pair, decision) } else { decision };
         let decision = self.settle(pair, decision);
         self.decisions.push(FollowedDecision { pair, pass: self.pass, decision });
         decision

@@ -1,4 +1,4 @@
-//! The number of detection passes that a step has logged, and which positions they certainly saw.
+//! Counts a step's logged detection passes, and finds the positions that they certainly used.
 use super::Follower;
 use crate::finding::{FindingDetail, Part};
 use fosssim_model::{
@@ -7,7 +7,7 @@ use fosssim_model::{
 };
 
 impl<'a> Follower<'a> {
-    /// Counts the passes that are logged before the mid record and after it.
+    /// Counts the logged passes before and after the mid record.
     pub(super) fn count_passes(&mut self) {
         let (Some(mid), per_pass) = (self.records.mid, self.context.per_pass) else { return };
         let (before, all) = (mid.polynomials.len(), self.records.end.polynomials.len());
@@ -33,7 +33,7 @@ impl<'a> Follower<'a> {
             return;
         };
         for (index, part) in [Part::Impulses, Part::Geometric].into_iter().enumerate() {
-            // Whether the geometric part runs follows from what happened before.
+            // An earlier error determines whether the geometric part runs.
             let follows = index == 1 && self.tainted[0];
             if logged[index] != self.passes[index] {
                 if !self.tainted[index] && !follows {
@@ -53,7 +53,7 @@ impl<'a> Follower<'a> {
         usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
     }
 
-    /// Positions at the end of the step that this pass sees for certain, because the trace holds them.
+    /// Returns the end positions of the step that this pass certainly uses, because the trace holds them.
     pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
         let [before, after] = self.logged_passes?;
         let number = self.passes[self.part()];

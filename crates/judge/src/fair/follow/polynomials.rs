@@ -1,4 +1,4 @@
-//! The charges against a step's polynomials.
+//! Judges a step's polynomials.
 use super::{Follower, SeenCall};
 use crate::{
     fair::{
@@ -11,12 +11,12 @@ use crate::{
 use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::bounded::BoundedValue;
 
-/// The comparison of each polynomial of a call; places beyond its number are unused.
-type Results = [Result<Match, Mismatch>; PairKind::MOST_POLYNOMIALS];
+/// The comparison of each polynomial of a call; the rest of the array is unused.
+type Results = [Result<Match, Mismatch>; PairKind::MAX_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
     /// Compares a pair's logged polynomials, which begin at `index`, with the expected ones. Returns whether they are
-    /// right, if the place of the particles is known.
+    /// right, if the particles' positions are known.
     pub(super) fn review(
         &mut self,
         pair: Pair,
@@ -53,7 +53,7 @@ impl<'a> Follower<'a> {
         {
             let other_motion = motion(known, None);
             let other = other_motion.polynomials();
-            let others = matches(&other, &[None; PairKind::MOST_POLYNOMIALS][..count]);
+            let others = matches(&other, &[None; PairKind::MAX_POLYNOMIALS][..count]);
             if others.iter().filter(|result| result.is_err()).count()
                 < results.iter().filter(|result| result.is_err()).count()
             {
@@ -65,7 +65,7 @@ impl<'a> Follower<'a> {
             let logged = self.logged_polynomial(pair, index, number);
             let is_known = self.known_positions().is_some()
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
-            // Behind an error that moves them, the place of the particles is unknown.
+            // After an error that moves the particles, their positions are unknown.
             let is_reached = is_known || !self.tainted[self.part()];
             let pended = self.judged.pending_count();
             let said = self.judged.note(&expected, &logged, result, is_reached);
@@ -82,7 +82,7 @@ impl<'a> Follower<'a> {
                     self.charge_polynomial(&logged, &expected, mismatch, is_known);
                 }
             }
-            // Positions that a response has led to have its round-off.
+            // Positions that result from a response have its round-off.
             self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, PolynomialJudgement::Wrong(_)));
         }
         self.call.seen = Some(SeenCall { motion: seen, has_right_approach });
@@ -97,8 +97,8 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
-    /// is where it should be: overlap and approach depend on the distance of the objects, the other two of a particle
-    /// and an edge on the place along the edge.
+    /// has the right position. Overlap and approach depend on the distance of the objects, the other two polynomials of
+    /// a particle and an edge depend on the position along the edge.
     fn is_proven(
         &self,
         expected: &ExpectedPolynomials,
@@ -132,7 +132,7 @@ impl<'a> Follower<'a> {
                 return;
             }
             if self.is_moved(logged.place.pair) {
-                // A formula that is known to be wrong is wrong here, too, wherever the particles are.
+                // A formula that is known to be wrong is wrong here as well, wherever the particles are.
                 if !self.wrong_formulas[kind][number] {
                     self.charge(FindingDetail::PassPositions { place: logged.place });
                     self.tainted[part] = true;
@@ -144,7 +144,7 @@ impl<'a> Follower<'a> {
         self.charge(wrong_polynomial(logged, expected.polynomial(number), mismatch));
     }
 
-    /// Notes the form of an approach polynomial which is the reference's bit for bit.
+    /// Notes the form of an approach polynomial that is identical to the reference's.
     pub(super) fn note_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
         if pair.kind == PairKind::ParticleEdge && self.judged.course_form.is_none() {
             let expected = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end).polynomials();

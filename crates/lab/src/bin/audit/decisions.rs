@@ -1,4 +1,4 @@
-//! Certified decisions compared with those of the root finder: the number of decisions of each level, and the number
+//! Compares certified decisions with those of the root finder: the number of decisions of each level, and the number
 //! and reasons of differences.
 use std::fmt::Write as _;
 
@@ -8,21 +8,22 @@ use fosssim_oracle::num::{
     polynomial::Polynomial,
 };
 
-/// Units of rounding that the fair rules allow for.
+/// The number of rounding units that the fair rules allow.
 const UNITS: f64 = 64.0;
 
-/// The reasons why root finder and certified decision differ: intentions of the original, or its rounding.
+/// The reasons why the root finder and the certified decision differ: intentional rules of the original, or its
+/// rounding.
 const REASONS: [&str; 3] = [
     "c t^m counts as nowhere positive in the original",
     "the original drops small leading coefficients",
     "the search rounds",
 ];
 
-/// The words for the levels of decisions, in their order.
+/// The descriptions of the decisions' levels, in order.
 const LEVELS: [&str; Level::ALL.len()] =
     ["signs of coefficients", "Bernstein coefficients", "parts of the step", "exact arithmetic"];
 
-/// Returns what the search found.
+/// Returns the result of the search as text.
 pub(super) fn describe_time(time: Option<f64>) -> String {
     match time {
         None => "the search never ends".to_owned(),
@@ -36,13 +37,13 @@ pub(super) fn describe_time(time: Option<f64>) -> String {
 pub(super) struct Decisions {
     levels: [u64; Level::ALL.len()],
     certainties: [u64; 3],
-    /// By reason; `[certainly no, but the search hits; certainly yes, but it does not]`.
+    /// The differences by reason: `[certainly no, but the search hits; certainly yes, but it does not]`.
     differ: [[u64; 2]; REASONS.len()],
     first: [Option<(u64, String)>; REASONS.len()],
 }
 
 impl Decisions {
-    /// Decides about one detection, whose polynomials the root finder has solved with this result, if it ended.
+    /// Compares one detection with the root finder's result, which is missing if its search did not end.
     pub(super) fn compare(
         &mut self,
         index: u64,
@@ -85,7 +86,7 @@ impl Decisions {
         }
     }
 
-    /// Adds another worker's table.
+    /// Adds the counts of another worker.
     pub(super) fn add(&mut self, other: Self) {
         let counts = self.levels.iter_mut().zip(other.levels);
         for (sum, count) in counts.chain(self.certainties.iter_mut().zip(other.certainties)) {
@@ -108,7 +109,7 @@ impl Decisions {
         }
         for ((reason, [hits, misses]), first) in REASONS.iter().zip(self.differ).zip(&self.first) {
             if hits + misses > 0 {
-                let _ = writeln!(text, "  {reason}: it finds {hits} impacts that are none, and misses {misses}");
+                let _ = writeln!(text, "  {reason}: it reports {hits} false impacts, and misses {misses}");
             }
             if let Some((index, what)) = first {
                 let _ = writeln!(text, "    first in detection {index}, {what}");

@@ -1,16 +1,16 @@
 //! Compares the certificate with the root finder on random detections, on all processors.
 //!
 //! `audit [detections] [seed]` draws that many detections (default: a million) of the three pair types from wide and
-//! nasty distributions. Wherever the certificate excludes an impact within the step, the search must exclude it, too:
-//! for the list, and for each polynomial by itself, where no other one hides a mistake. A fourth kind are products of
-//! linear factors whose zeros are as awkward as can be. It prints how many detections each level decided, how many the
-//! search alone could decide, and the first disagreement; there must be none. The draws depend on the seed only, not on
-//! the number of processors.
+//! difficult distributions. Whenever the certificate excludes an impact within the step, the search must exclude it as
+//! well: for the list, and for each polynomial alone, so that no other polynomial hides a mistake. A fourth kind are
+//! products of linear factors with particularly difficult zeros. The program prints how many detections each level
+//! decided, how many only the search could decide, and the first disagreement, of which there must be none. The draws
+//! depend on the seed only, not on the number of processors.
 //!
-//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as the fair rules have it)
-//! with the root finder. Here disagreements are facts about the root finder, not mistakes: a decision is true. They are
-//! sorted by what the original does on purpose: `c t^m` counts as nowhere positive, and small leading coefficients are
-//! dropped. All others come from its rounding. They do not change the exit code.
+//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as in the fair rules) with
+//! the root finder. Certified decisions are proved, so disagreements show the root finder's properties. They are sorted
+//! by the original's intentional rules (`c t^m` counts as nowhere positive, and small leading coefficients are
+//! dropped); all others come from its rounding. They do not change the exit code.
 //!
 //! `audit states [CORPUS]` runs right programs in other arithmetic on scenes whose traces hold states.
 #![forbid(unsafe_code)]
@@ -32,7 +32,7 @@ mod states;
 
 use decisions::Decisions;
 
-/// Detections that one thread draws in one go.
+/// The number of detections that one thread draws at a time.
 const BLOCK: u64 = 10_000;
 
 fn main() -> ExitCode {
@@ -50,7 +50,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Compares this number of detections.
+/// Compares `detections` detections.
 fn certificates(detections: u64, seed: u64) -> ExitCode {
     let audited = |block: u64| {
         let (mut tally, mut random) = (AuditTally::default(), Random::new(seed, block));
@@ -65,13 +65,13 @@ fn certificates(detections: u64, seed: u64) -> ExitCode {
     ExitCode::from(u8::from(total.disagreements > 0))
 }
 
-/// The words for the levels of the certificate, in their order.
+/// The descriptions of the certificate's levels, in order.
 const LEVELS: [&str; Level::ALL.len()] = ["nowhere positive", "a line", "a parabola", "Bernstein coefficients"];
 
 /// The three pair types, in the order of collisions.md 1, and bare products.
 const PAIRS: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-plane", "product"];
 
-/// Counts per pair type; the last entry of a row counts what no level decided.
+/// Counts per pair type; the last entry of a row counts undecided detections.
 #[derive(Default)]
 struct AuditTally {
     decided: [[u64; Level::ALL.len() + 1]; PAIRS.len()],
@@ -150,10 +150,10 @@ impl AuditTally {
         for (decisions, name) in self.decisions.iter().zip(PAIRS) {
             decisions.report(name, &mut text);
         }
-        // The exit code's reason comes last.
+        // The reason for the exit code comes last.
         let _ = match &self.first {
             None => {
-                writeln!(text, "\ndisagreements: 0. Where a certificate excludes an impact, the search finds none.")
+                writeln!(text, "\ndisagreements: 0. If a certificate excludes an impact, the search finds none.")
             }
             Some((index, what)) => {
                 writeln!(text, "\ndisagreements: {}. First: detection {index}, {what}", self.disagreements)
@@ -189,7 +189,7 @@ impl Random {
         lo + (hi - lo) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    /// Returns 10 to a uniform power.
+    /// Returns 10 to the power of a uniform number.
     fn log(&mut self, lo: f64, hi: f64) -> f64 {
         10.0_f64.powf(self.uniform(lo, hi))
     }
@@ -217,7 +217,7 @@ fn turn(v: Vec2) -> Vec2 {
     Vec2::new(-v.y, v.x)
 }
 
-/// Three points with their displacements: a particle, and another one, an edge's ends, or a half-plane's point and
+/// Three points with their displacements: a particle, and another particle, an edge's ends, or a half-plane's point and
 /// normal (whose displacement is ignored).
 struct RandomMotion {
     x: [Vec2; 3],
@@ -246,7 +246,7 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
     ];
     let (name, make) = kinds[random.below(kinds.len() as u64) as usize];
     let mut motion = make(random);
-    // Round every displacement through end positions, as a simulation does.
+    // Rounds every displacement through end positions, like a simulation.
     for (x, d) in motion.x.iter().zip(&mut motion.d) {
         *d = (*x + *d) - *x;
     }
@@ -258,8 +258,8 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
     (pair, name, lists)
 }
 
-/// Returns a polynomial of degree three to five with zeros on a coarse grid, some of them multiple or nearly so, that
-/// is often negative within the step.
+/// Returns a polynomial of degree three to five with zeros on a coarse grid, some of them exactly or nearly multiple,
+/// that is often negative within the step.
 fn product(random: &mut Random) -> Vec<BoundedValue> {
     let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
     let degree = 3 + random.below(3) as usize;
@@ -268,7 +268,7 @@ fn product(random: &mut Random) -> Vec<BoundedValue> {
     coefficients[0] = random.uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
     let mut count = 0;
     while count < degree {
-        // The step itself is left out most of the time.
+        // Places within the step are mostly avoided.
         let place = (random.below(33) as f64 - 16.0) * unit;
         if (0.0..=1.0).contains(&place) && !random.chance(16) {
             continue;
@@ -297,7 +297,7 @@ fn draw_wide(random: &mut Random) -> RandomMotion {
     RandomMotion { x: [a.0, b.0, c.0], d: [a.1, b.1, c.1], radius: scale * random.log(-3.0, 0.3) }
 }
 
-/// Integers or simple fractions, where coincidences are frequent.
+/// Makes a motion of integers or simple fractions, with frequent coincidences.
 fn grid(random: &mut Random) -> RandomMotion {
     let unit = [1.0, 0.5, 0.25, 0.1, 1e-3][random.below(5) as usize];
     let (reach, speed) = (1 + random.below(12), random.below(5));
@@ -315,7 +315,7 @@ fn near_rigid(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// Returns the particle touches, or nearly, and moves along or hardly at all.
+/// Makes a motion in which the particle touches, or nearly touches, and moves along the object or hardly moves.
 fn resting(random: &mut Random) -> RandomMotion {
     let mut motion = bulk(random);
     let along = motion.x[2] - motion.x[1];
@@ -329,7 +329,8 @@ fn resting(random: &mut Random) -> RandomMotion {
     motion
 }
 
-/// Returns the particle passes at about the sum of the radii at some time before, within or after the step.
+/// Makes a motion in which the particle passes at about the sum of the radii at some time before, within or after the
+/// step.
 fn grazing(random: &mut Random) -> RandomMotion {
     let mut motion = if random.chance(2) { draw_wide(random) } else { turning(random) };
     let time = random.uniform(-2.0, 4.0);
@@ -375,7 +376,7 @@ fn turning(random: &mut Random) -> RandomMotion {
     }
 }
 
-/// Makes a motion in which everything moves together, with small differences, as most pairs of a scene do.
+/// Makes a motion in which everything moves together, with small differences, like most pairs of a scene.
 fn bulk(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let together = random.direction() * (scale * random.log(-8.0, 0.5));

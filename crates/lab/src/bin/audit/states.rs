@@ -1,5 +1,5 @@
-//! Right programs in other arithmetic on scenes whose traces hold states: the share of the fair rules' tolerances that
-//! they use, and the noise that the rules reject.
+//! Runs right programs in other arithmetic on scenes whose traces hold states. Measures their share of the fair rules'
+//! tolerances, and the noise that the rules reject.
 use fosssim_lab::{
     right,
     runs::{is_accepted, judge},
@@ -19,10 +19,10 @@ use std::{
     process::ExitCode,
 };
 
-/// The sizes of noise that are added to numbers of right traces.
+/// The sizes of noise that is added to numbers of right traces.
 const NOISES: [f64; 6] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8];
 
-/// The number of right traces of each scene that get noise.
+/// The number of right traces of each scene to which noise is added.
 const NOISY: u64 = 8;
 
 /// The results on the scenes of one milestone.
@@ -35,9 +35,9 @@ struct MilestoneTally {
     /// The largest share of a tolerance.
     position: f64,
     velocity: f64,
-    /// The least factor by which the differences of single steps from the reference have to grow to be rejected.
+    /// The smallest factor by which the differences of single steps from the reference must grow to be rejected.
     room: Option<u32>,
-    /// The number of traces that get each noise, and the number of these that are rejected.
+    /// The number of traces with each noise, and the number of rejected ones.
     noisy: u64,
     refused: [u64; NOISES.len()],
 }
@@ -89,7 +89,7 @@ impl MilestoneTally {
     }
 }
 
-/// Returns the milestone, its results on this scene, and the right programs that are rejected.
+/// Returns the milestone, its results on a scene, and the rejected right programs.
 fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>) {
     let mut tally = MilestoneTally { scenes: 1, ..MilestoneTally::default() };
     let mut faults = Vec::new();
@@ -119,10 +119,10 @@ fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>)
     (milestone, tally, faults)
 }
 
-/// Judges single steps of a right program whose differences from the reference were made larger.
+/// Judges single steps of a right program with enlarged differences from the reference.
 struct SingleSteps<'a> {
     scene: &'a Scene,
-    /// This step alone.
+    /// The scene with a single step.
     one: Scene,
     before: State,
     steps: u32,
@@ -130,8 +130,8 @@ struct SingleSteps<'a> {
 }
 
 impl<'a> SingleSteps<'a> {
-    /// The number of steps of a scene that are tried.
-    const MOST: u32 = 24;
+    /// The maximum number of steps of a scene that are tried.
+    const MAX_STEPS: u32 = 24;
 
     fn new(scene: &'a Scene) -> Self {
         let one = Scene { duration: scene.time_step, ..scene.clone() };
@@ -141,7 +141,7 @@ impl<'a> SingleSteps<'a> {
     fn hear(&mut self, after: &State, contacts: &[Contact]) {
         let before = std::mem::replace(&mut self.before, after.clone());
         self.steps += 1;
-        let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MOST).max(1));
+        let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MAX_STEPS).max(1));
         if !is_tried || self.scene.particles.len() > 200 {
             return;
         }

@@ -1,4 +1,5 @@
-//! Records that are missing throughout: then every later record is in another one's place, and no step looks right.
+//! Finds records that are missing throughout. Every later record is then in the place of another, and no step looks
+//! right.
 use super::{explain, resimulate::resimulate};
 use crate::diagnose::{
     Explanation,
@@ -7,7 +8,8 @@ use crate::diagnose::{
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
 use fosssim_student::{Mistake, Row, StepLog, Student, World, find};
 
-/// Returns the record that this program leaves out, if the trace's beginning is right once that is taken into account.
+/// Returns the record that this program leaves out, if the trace's beginning is right with this record taken into
+/// account.
 pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let layout = Layout::for_scene(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
@@ -16,13 +18,13 @@ pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> 
             return None;
         }
         let steps = aligned_steps(scene, layout, &scan.outline.opening, row)?;
-        // A scene in which nothing moves is right however it is read; then only the number of records decides.
+        // A scene in which nothing moves is right in any case, so only the number of records decides.
         let tells = !scan.wrong.is_empty() || scan.outline.records == Some(expected);
         tells.then(|| explain(row, (steps, steps)))
     })
 }
 
-/// Returns the number of records of such a trace.
+/// Returns the number of records of a trace without the record of `row`.
 fn records_without(layout: Layout, row: &Row) -> u64 {
     match row.mistake {
         Mistake::LogNoInitial => layout.records() - 1,
@@ -30,8 +32,8 @@ fn records_without(layout: Layout, row: &Row) -> u64 {
     }
 }
 
-/// Returns the number of steps in the opening if the records are read without the missing one; `None` if one of them is
-/// wrong.
+/// Returns the number of right steps in the opening if the records are read without the missing one; `None` if one of
+/// them is wrong.
 fn aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

@@ -1,18 +1,18 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
+    applicable_rows::applicable,
     resimulate::ApproachForm,
-    shown::applicable,
     trials::{Program, Trials},
 };
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::scene::Scene;
 use fosssim_student::{Edit, Mistake, Row, Slip, StepMistake};
 
-/// Steps on which all rows are tried when none reproduces everything.
-const PARTIAL: usize = 16;
-/// Polynomials that may be computed in all; about a microsecond each.
-const WORK: u64 = 1_500_000;
-/// A row, and how many of the wrong steps it reproduces.
+/// The number of steps on which all rows are tried if no row reproduces everything.
+const MAX_PARTIAL_STEPS: usize = 16;
+/// The maximum number of computed polynomials; each takes about a microsecond.
+const MAX_WORK: u64 = 1_500_000;
+/// A row, with the number of wrong steps that it reproduces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Score {
     pub(super) row: &'static Row,
@@ -20,23 +20,23 @@ pub(super) struct Score {
     pub(super) samples: u64,
 }
 
-/// A row, and the program with its mistake alone.
+/// A row, and the program with only its mistake.
 type Candidate = (&'static Row, Program);
 
-/// All programs, and the steps in the order in which they are tried.
+/// All programs, and the steps in the order of the trials.
 pub(super) struct Candidates<'a> {
     candidates: Vec<Candidate>,
     scan: &'a Scan,
     probes: Vec<&'a KeptStep>,
-    /// The wrong steps that are no probes.
+    /// The wrong steps that are not probes.
     others: Vec<&'a KeptStep>,
     trials: Trials<'a>,
 }
 
 impl<'a> Candidates<'a> {
-    /// Sets the programs up.
+    /// Creates the programs.
     ///
-    /// `correct` is the program that the mistakes are added to.
+    /// `correct` is the program to which the mistakes are added.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: ApproachForm) -> Self {
         let trials = Trials::new(reference, scene, correct);
         let candidates = applicable(scene).map(|row| (row, trials.program(&[row]))).collect();
@@ -46,8 +46,8 @@ impl<'a> Candidates<'a> {
         Self { candidates, scan, probes, others, trials }
     }
 
-    /// Returns the rows that reproduce the most, all of them equally many wrong steps, in the order of the catalogue.
-    /// Empty when that is less than half.
+    /// Returns the rows that reproduce the most wrong steps, all the same number, in the order of the catalogue. Empty
+    /// if that is less than half.
     pub(super) fn best(&self) -> Vec<Score> {
         let complete = self.complete();
         if complete.is_empty() { self.partial() } else { complete }
@@ -58,7 +58,7 @@ impl<'a> Candidates<'a> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
         for sample in self.probes.iter().copied().chain(&self.scan.right).chain(self.others.iter().copied()) {
-            if self.trials.exceed(WORK) && samples > 0 {
+            if self.trials.exceed(MAX_WORK) && samples > 0 {
                 break;
             }
             left.retain(|candidate| self.reproduces(candidate, sample));
@@ -70,29 +70,29 @@ impl<'a> Candidates<'a> {
         left.iter().map(|(row, _)| Score { row, reproduced: samples, samples }).collect()
     }
 
-    /// Returns the rows that reproduce the most wrong steps, half of them at least, and all right ones.
+    /// Returns the rows that reproduce the most wrong steps, at least half of them, and all right ones.
     fn partial(&self) -> Vec<Score> {
         self.trials.restart();
         let wrong = [self.probes.as_slice(), &self.others].concat();
-        let stride = wrong.len().div_ceil(PARTIAL).max(1);
+        let stride = wrong.len().div_ceil(MAX_PARTIAL_STEPS).max(1);
         let spread: Vec<&KeptStep> = wrong.iter().step_by(stride).copied().collect();
         let rest = wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
         let rest: Vec<&KeptStep> = rest.map(|(_, sample)| *sample).collect();
         let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
         for (number, sample) in spread.iter().chain(&rest).enumerate() {
-            if self.trials.exceed(WORK) {
+            if self.trials.exceed(MAX_WORK) {
                 break;
             }
             tried = number + 1;
-            // A candidate that has failed in more than half of the spread steps is out.
+            // A candidate that has failed in more than half of the sampled steps is dropped.
             let allowed = spread.len().max(tried) / 2;
             left.retain_mut(|(candidate, reproduced)| {
                 *reproduced += usize::from(self.reproduces(candidate, sample));
                 tried - *reproduced <= allowed
             });
         }
-        // A mistake that does not make the first difference is not the right one.
+        // A mistake that does not reproduce the first difference is not the right one.
         left.retain(|(candidate, reproduced)| {
             2 * reproduced >= tried
                 && self.scan.wrong.first().is_none_or(|first| self.reproduces(candidate, first))
@@ -104,7 +104,7 @@ impl<'a> Candidates<'a> {
         left.into_iter().map(|((row, _), _)| Score { row, reproduced, samples }).collect()
     }
 
-    /// Returns whether this program logs in this step what the submission did.
+    /// Returns whether the program logs the same as the submission in this step.
     fn reproduces(&self, (row, program): &Candidate, sample: &KeptStep) -> bool {
         match row.mistake {
             Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,

@@ -9,7 +9,7 @@ use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
 use fosssim_num::vector::at;
 use fosssim_student::{StepLog, World};
 
-/// Returns the example of a wrong step: the first different place, the expected and the logged value.
+/// Returns the example of a wrong step: the first difference, with the expected and the logged value.
 pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: ApproachForm, kept: &KeptStep) -> Example {
     let mut capture = Capture::new(&scene.collision);
     // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
@@ -46,7 +46,7 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: App
     Example { step: kept.step, place, given: Vec::new(), expected, actual }
 }
 
-/// Returns the first contact that differs: normal and time, three numbers.
+/// Returns the first different contact as three numbers: normal and time.
 fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
     let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
@@ -70,7 +70,7 @@ fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, 
     }
 }
 
-/// Returns the position and velocity of a particle: four numbers.
+/// Returns the position and velocity of a particle as four numbers.
 fn state(particle: usize, record: StepRecord, ours: &State, theirs: &State) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let values = |state: &State| {
         let (x, v) = (at(&state.positions, particle), at(&state.velocities, particle));

@@ -1,27 +1,27 @@
-//! Which known mistake reproduces a submission: steps are simulated again with each mistake of the catalogue.
+//! Finds the known mistake that reproduces a submission. Steps are simulated again with each mistake of the catalogue.
 //!
-//! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For some of
-//! them, chosen to be diverse, and for some right ones in which something happens, the second simulator
-//! ([`fosssim_student`]) starts from the submission's own state and makes one mistake. The mistake explains the
-//! submission if everything that the step logged is reproduced: polynomials up to a positive factor, contacts, the
-//! states in the middle and at the end. It never judges: a step that no mistake reproduces stays wrong all the same.
-//! Correct variants of the catalogue are tried, too, and if one of them reproduces the steps no mistake is named.
+//! A submission's wrong steps are those whose records differ from the reference's by more than round-off. For a diverse
+//! selection of them, and for several right steps with events, the second simulator ([`fosssim_student`]) starts from
+//! the submission's own state and makes one mistake. The mistake explains the submission if everything that the step
+//! logged is reproduced: polynomials up to a positive factor, contacts, the states in the middle and at the end. The
+//! search never judges: a step that no mistake reproduces stays wrong. Correct variants of the catalogue are tried as
+//! well, and if one of them reproduces the steps, no mistake is named.
 //!
 //! The mathematics is that of the two simulators; the only tolerances are those of [`compare`].
 mod alignment;
+mod applicable_rows;
 mod candidates;
-mod denied;
+mod combinations;
+mod contradictions;
 mod example;
 mod refute;
 mod resimulate;
-mod several;
-mod shown;
 mod trials;
 
+pub use applicable_rows::can_show;
+pub(super) use combinations::is_empty_stage;
 pub use refute::shows;
 pub(super) use refute::shows_within;
-pub(super) use several::is_empty_stage;
-pub use shown::can_show;
 
 use super::{
     Detail, Explanation,
@@ -29,24 +29,23 @@ use super::{
     sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, first_difference, sample_trace},
 };
 use candidates::Candidates;
+use combinations::SeveralRows;
 use fosssim_model::{scene::Scene, trace::Layout};
 use fosssim_student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use resimulate::{ApproachForm, resimulate};
-use several::SeveralRows;
 use trials::Trials;
 
-/// Searches the catalogue for the mistake that explains this trace.
+/// Searches the catalogue for the mistake that explains a trace.
 ///
-/// The result is empty when all steps are right, when no mistake reproduces at least half of the wrong steps, or when a
-/// correct variant reproduces them as well. Else it holds one explanation, or those of up to three mistakes that
-/// reproduce the steps together, in addition to stages that are still empty; further mistakes that reproduce the same
-/// steps are in [`Explanation::same_as`]. Of those, the first one is a stage that was left empty, if there is one, else
-/// the earliest of the assignment's order: polynomials, contact vectors, decisions, responses, loops, zones, failsafe,
-/// trace.
+/// The result is empty if all steps are right, if no mistake reproduces at least half of the wrong steps, or if a
+/// correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three mistakes that
+/// reproduce the steps together, in addition to empty stages. Further mistakes that reproduce the same steps are in
+/// [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order: polynomials,
+/// contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
-/// `samples` and `reproduced` count wrong steps; right ones that the mistake would make wrong exclude it. Traces of any
-/// content are accepted; unreadable parts, damaged records, and bytes behind the first 64 MiB are ignored. A trace
-/// whose first record is another scene's yields only the question whether it is of this scene
+/// `samples` and `reproduced` count wrong steps. Right steps that the mistake would make wrong exclude it. Traces of
+/// any content are accepted. Unreadable parts, damaged records, and bytes after the first 64 MiB are ignored. A trace
+/// whose first record belongs to another scene yields only the question whether it belongs to this one
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
@@ -54,8 +53,8 @@ pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     known_or_open(&mut reference, scene, scan).explanations
 }
 
-/// Returns whether a right program with one of these mistakes of the catalogue, and no other, makes all wrong steps of
-/// a trace that are kept. Asks much less than [`find_known`] does.
+/// Returns whether a right program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace. Needs
+/// much less work than [`find_known`].
 #[must_use]
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::whole(trace));
@@ -67,14 +66,14 @@ pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     })
 }
 
-/// The catalogue's explanations of a trace, and what they leave open.
+/// The catalogue's explanations of a trace, and the unexplained rest.
 #[derive(Debug, Default)]
 pub(super) struct KnownMistakes {
     /// The mistakes, the likeliest first.
     pub(super) explanations: Vec<Explanation>,
     /// The kept steps, if no mistake explains all of them.
     pub(super) open: Option<Scan>,
-    /// Keys of empty stages of which the trace shows something.
+    /// The keys of empty stages that are visible in the trace.
     pub(super) denies: Vec<String>,
 }
 
@@ -89,26 +88,26 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
         let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
         return only(Explanation::for_other_scene(has_length));
     }
-    let denies = denied::find_denied(scene, &scan);
+    let denies = contradictions::find_denied(scene, &scan);
     let (mut explanations, is_settled) = explain_wrong_steps(reference, scene, &mut scan);
     explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
     if !explanations.is_empty() || scan.outline.padded == 0 {
         return KnownMistakes { explanations, open: (!is_settled).then_some(scan), denies };
     }
-    // Reading drops coefficients that the course's library would have dropped, so such steps look right.
+    // The reader drops coefficients that the course's library would have dropped, so padded steps look right.
     let padded = find("log-padded").map(|row| explain(row, (scan.outline.padded, scan.outline.padded)));
     KnownMistakes { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
-/// Returns the catalogue's explanations, and whether these are complete. It may leave the steps as a program with the
-/// right approach sees them.
+/// Returns the catalogue's explanations, and whether they are complete. It may change the steps to those of a program
+/// with the right approach.
 fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
     }
     let mut partly = None;
     for correct in [ApproachForm::Supplied, ApproachForm::RightApproach] {
-        // The fair rules accept the right approach, too; behind it may be a mistake of another kind.
+        // The fair rules accept the right approach as well; it may hide a mistake of another kind.
         if correct == ApproachForm::RightApproach && !take_right_approach(scan, scene) {
             break;
         }
@@ -116,7 +115,7 @@ fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut 
         if is_complete {
             return (explanation.into_iter().collect(), true);
         }
-        if let Some(several) = several::find_set(reference, scene, scan, correct) {
+        if let Some(several) = combinations::find_set(reference, scene, scan, correct) {
             return (together(reference, scene, scan, correct, &several), true);
         }
         partly = partly.or(explanation);
@@ -124,8 +123,8 @@ fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut 
     (partly.into_iter().collect(), scan.wrong.is_empty())
 }
 
-/// Sees the same steps as a program does whose particle-edge approach is mathematically right: many that were wrong
-/// are right then. False when all are, or when the scene has no edge.
+/// Compares the steps with a program whose particle-edge approach is mathematically right, which makes many wrong steps
+/// right. Returns false if all become right, or if the scene has no edge.
 fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     if scene.edges.is_empty() {
         return false;
@@ -134,7 +133,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     let samples = std::mem::take(&mut scan.wrong).into_iter().chain(std::mem::take(&mut scan.right));
     for mut sample in samples {
         let logged = sample.records.end.polynomials.len();
-        // A few more than were logged show that there are too few; further ones do not matter.
+        // A few more polynomials than were logged show that there are too few; further ones do not matter.
         let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
         let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };
@@ -145,10 +144,10 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     !scan.wrong.is_empty()
 }
 
-/// The number of surplus polynomials, compared with the log, after which a step is left.
+/// The number of surplus polynomials, compared with the log, after which a step is stopped.
 const SPARE: usize = 10_000;
 
-/// Returns the explanations of several mistakes, which reproduce the same steps together. Empty stages come first.
+/// Returns the explanations of several mistakes that reproduce the same steps together. Empty stages come first.
 fn together(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -191,9 +190,8 @@ fn best(
     (Some(explanation), complete)
 }
 
-/// Returns a rank of which smaller is likelier, among mistakes that a trace can't distinguish: work that was not done
-/// at all comes first, and mistakes that need a special scene to show come last. Rows of the same number keep the
-/// catalogue's order.
+/// Returns a rank (smaller is likelier) among mistakes that a trace cannot distinguish. Unwritten functions come first,
+/// and mistakes that show only in special scenes come last. Rows of equal rank keep the catalogue's order.
 fn plausibility(row: &Row) -> u8 {
     match row.mistake {
         Mistake::ParticleParticleEmpty
@@ -215,7 +213,7 @@ fn plausibility(row: &Row) -> u8 {
     }
 }
 
-/// Returns the explanation that names a row, without an example.
+/// Returns the explanation for a row, without an example.
 fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],

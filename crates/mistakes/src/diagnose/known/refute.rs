@@ -1,7 +1,7 @@
-//! Whether a mistake would be seen on a scene: where a program was right all the same, it does not make it.
+//! Decides whether a mistake would show on a scene. A program that was right on it does not make the mistake.
 use super::{
+    applicable_rows::can_show,
     resimulate::{resimulate, step_work},
-    shown::can_show,
 };
 use crate::diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial};
 use fosssim_model::{
@@ -11,19 +11,18 @@ use fosssim_model::{
 use fosssim_student::{Area, Mistake, StepLog, Student, World, find};
 use std::cell::Cell;
 
-/// Polynomials that may be computed; about a microsecond each.
-const WORK: u64 = 200_000;
+/// The maximum number of computed polynomials; each takes about a microsecond.
+const MAX_WORK: u64 = 200_000;
 
-/// Returns whether a program that makes this mistake of the catalogue logs something plainly wrong on this scene, which
-/// no judge takes for round-off. False also if the search would take too long, and if the course's library does that
-/// part of the work: in `simple` and `continuous-time` it responds, so that a program's own impulses are seen in
-/// `hybrid` only.
+/// Returns whether a program with this mistake logs a plainly wrong value on this scene, which no rule takes for
+/// round-off. Also false if the search would take too long, or if the course's library does that part of the work: in
+/// `simple` and `continuous-time` it responds, so a program's own impulses show only in `hybrid`.
 #[must_use]
 pub fn shows(scene: &Scene, key: &str) -> bool {
     shows_within(scene, key, &Cell::new(0))
 }
 
-/// Returns whether it shows, where all searches before count towards what may take too long.
+/// Returns whether the mistake shows; `work` limits all searches together.
 pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
     if row.area == Area::Response
@@ -32,14 +31,14 @@ pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u6
         return false;
     }
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
-    // The fair rules accept the nearest point of an edge, too: where that shows, other contact vectors may pass.
+    // The fair rules also accept the nearest point of an edge, so other contact vectors may pass if it shows.
     let accepted = world.for_student(Student::new(Some(Mistake::ParticleEdgeContactClamped)));
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);
     let each = step_work(scene);
     for _ in 0..scene.steps() {
         let before = simulation.state().clone();
-        if work.get() > WORK || simulation.step(&mut capture).is_err() {
+        if work.get() > MAX_WORK || simulation.step(&mut capture).is_err() {
             return false;
         }
         let expected = &capture.records.end.polynomials;

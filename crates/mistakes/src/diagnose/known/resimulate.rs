@@ -1,4 +1,4 @@
-//! Steps of a student's program, from a submission's own state.
+//! Simulates steps of a student's program from a submission's own state.
 use crate::diagnose::sampling::{LoggedNumbers, StepRecords};
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -6,17 +6,17 @@ use fosssim_model::{
 };
 use fosssim_student::{Mistake, Record, State, StepLog, Student, World, step};
 
-/// The particle-edge approach of a submission, right in either form.
+/// The particle-edge approach of a submission, in one of the two accepted forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ApproachForm {
     /// The program uses the particle-edge approach that the course supplies.
     Supplied,
-    /// The program has put that right.
+    /// The program uses the mathematically right approach.
     RightApproach,
 }
 
 impl ApproachForm {
-    /// Returns a correct program of this kind, with a mistake.
+    /// Returns a correct program of this form, with a mistake.
     pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
         let student = Student::new(mistake);
         match self {
@@ -26,8 +26,9 @@ impl ApproachForm {
     }
 }
 
-/// Returns the cost of a step without its polynomials, in polynomials: forces between all pairs are many times cheaper
-/// than these, and penalty forces check only near pairs. Solves of implicit integrators are counted when they happen.
+/// Returns the cost of a step without its polynomials, in units of a polynomial. Forces between all pairs are much
+/// cheaper than polynomials, and penalty forces check only near pairs. Solves of implicit integrators are counted when
+/// they happen.
 pub(super) fn step_work(scene: &Scene) -> u64 {
     let of_pairs = match scene.collision {
         Collision::None => 0,
@@ -37,8 +38,8 @@ pub(super) fn step_work(scene: &Scene) -> u64 {
     10 + (of_pairs + scene.forces.len() / 16) as u64
 }
 
-/// Returns the records that a program writes in a step from this state; `None` when it fails or writes another number
-/// of them.
+/// Returns the records that a program writes in a step from a given state; `None` if the step fails or writes another
+/// number of records.
 pub(super) fn resimulate(
     world: &World,
     before: &fosssim_model::sim::State,

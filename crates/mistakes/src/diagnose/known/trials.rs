@@ -1,4 +1,4 @@
-//! Programs with mistakes of the catalogue, tried on kept steps.
+//! Runs programs with mistakes of the catalogue on kept steps.
 use super::resimulate::{ApproachForm, resimulate, step_work};
 use crate::diagnose::sampling::{
     KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
@@ -7,20 +7,20 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{Row, StepLog, Student, World};
 use std::cell::Cell;
 
-/// Tries programs, and counts the polynomials that they compute; one takes about a third of a microsecond.
+/// Tries programs, and counts the polynomials that they compute; each takes about a third of a microsecond.
 pub(super) struct Trials<'a> {
-    /// The scene, for programs of all students.
+    /// The scene, prepared for programs of all students.
     world: World,
     correct: ApproachForm,
     round_off: Tolerance,
     step_work: u64,
-    /// The polynomials that were computed so far.
+    /// The number of polynomials computed so far.
     work: Cell<u64>,
-    /// The polynomials that all trials of an explanation may still compute.
+    /// The number of polynomials that all trials of an explanation may still compute.
     left: &'a Cell<u64>,
 }
 
-/// A program.
+/// A student's program on the scene.
 pub(super) struct Program(World);
 
 impl<'a> Trials<'a> {
@@ -31,24 +31,25 @@ impl<'a> Trials<'a> {
         Self { world, correct, round_off, step_work, work: Cell::new(0), left: &reference.trials }
     }
 
-    /// Returns whether more than these polynomials were computed, or nothing is left.
+    /// Returns whether more than `most` polynomials were computed, or no work is left.
     pub(super) fn exceed(&self, most: u64) -> bool {
         self.work.get() > most || self.left.get() == 0
     }
 
-    /// Counts from zero again.
+    /// Resets the count of polynomials.
     pub(super) fn restart(&self) {
         self.work.set(0);
     }
 
-    /// Returns the program with these mistakes.
+    /// Creates a program with the mistakes of `rows`.
     pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
         let student: Student =
             rows.iter().fold(self.correct.with(None), |student, row| student.with_mistake(Some(row.mistake)));
         Program(self.world.for_student(student))
     }
 
-    /// Returns the part of the logged step that the program reproduces: 1 is all of it, polynomials are the first half.
+    /// Returns the part of the logged step that the program reproduces: 1 is all of it, and polynomials are the first
+    /// half.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub(super) fn reproduced_share(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;

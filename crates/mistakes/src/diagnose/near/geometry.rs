@@ -1,28 +1,28 @@
-//! The place where the bodies of near pairs are.
+//! The positions and boxes of the bodies of near pairs.
 use fosssim_model::{
     scene::{Edge, HalfPlane, Scene},
     sim::{Pair, PairKind, State},
 };
 use fosssim_num::vector::{Vec2, at, length};
 
-/// A body's extent with its radius: its lower and its upper corner.
+/// A body's extent with its radius, as its lower and upper corner.
 pub(super) type BoundingBox = [Vec2; 2];
 
 /// A scene at the start of a step.
 pub(super) struct Moment<'a> {
     pub scene: &'a Scene,
     pub before: &'a State,
-    /// The scene's first positions.
+    /// The positions at the start of the scene.
     pub start: Vec<f64>,
     /// The diameter of the largest particle.
     pub largest: f64,
-    /// The lower corner of all bodies.
+    /// The lower corner of the box of all bodies.
     pub corner: Vec2,
     /// The boxes of particles, then of edges.
     boxes: Vec<BoundingBox>,
 }
 
-/// A near pair of a step.
+/// A near pair in a step, with its geometry.
 #[derive(Clone, Copy)]
 pub(super) struct PlacedPair<'a> {
     pub moment: &'a Moment<'a>,
@@ -45,7 +45,7 @@ impl<'a> Moment<'a> {
 }
 
 impl<'a> PlacedPair<'a> {
-    /// Returns the numbers of its bodies.
+    /// Returns the numbers of the pair's bodies.
     pub const fn numbers(&self) -> [usize; 2] {
         [self.pair.first as usize, self.pair.second as usize]
     }
@@ -80,7 +80,8 @@ impl<'a> PlacedPair<'a> {
         }
     }
 
-    /// Returns the numbers of its bodies in an array of particles and edges: of a half-plane, the particle's again.
+    /// Returns the indices of the pair's bodies in an array of particles and edges; for a half-plane, the particle's
+    /// index again.
     fn bodies(&self) -> [usize; 2] {
         let [first, second] = self.numbers();
         match self.pair.kind {
@@ -90,7 +91,7 @@ impl<'a> PlacedPair<'a> {
         }
     }
 
-    /// Returns the boxes of its bodies: of a half-plane, the particle's again.
+    /// Returns the boxes of the pair's bodies; for a half-plane, the particle's box again.
     pub fn boxes(&self) -> [BoundingBox; 2] {
         self.bodies().map(|body| self.moment.boxes[body])
     }
@@ -100,7 +101,7 @@ impl<'a> PlacedPair<'a> {
         [self.center(), self.nearest(&self.moment.before.positions)]
     }
 
-    /// Returns whether it is near at other positions, too: boxes that overlap, or a half-plane within reach.
+    /// Returns whether the pair is near at positions `x`: its boxes overlap, or its half-plane is in reach.
     pub fn is_near(&self, x: &[f64]) -> bool {
         if self.half_plane().is_some() {
             return length(self.nearest(x) - at(x, self.numbers()[0])) < self.radius();
@@ -117,7 +118,7 @@ impl<'a> PlacedPair<'a> {
         distance(&later) >= distance(positions)
     }
 
-    /// Returns the boxes of all other bodies that begin between the two on an axis, as a sweep meets them.
+    /// Returns the boxes of all other bodies that begin between the two on an axis, in the order of a sweep.
     pub fn boxes_between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
         let [one, other] = self.boxes().map(|one| one[0][axis]);

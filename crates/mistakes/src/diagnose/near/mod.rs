@@ -1,8 +1,9 @@
-//! The faults of a contest's search for near pairs.
+//! Finds the faults of a contest's search for near pairs.
 //!
-//! A contest's programs write nothing else, so nothing else is named: neither the force nor the integrator. The fair
-//! rules find how many times a step applied the force of each near pair. The trait of [`traits`] that distinguishes
-//! wrong pairs from right ones best shows where the search goes wrong; all traces of a program are counted together.
+//! The search is the only code that a contest's student writes, so the force and the integrator are never named. The
+//! fair rules find how many times a step applied the force of each near pair. The trait of [`traits`] that best
+//! distinguishes wrong pairs from right ones shows where the search fails. All traces of a program are counted
+//! together.
 mod geometry;
 mod traits;
 
@@ -21,21 +22,22 @@ use geometry::{Moment, PlacedPair};
 use std::collections::BTreeSet;
 use traits::Variant;
 
-/// The number of wrong steps that are examined, and of right ones times four.
-const MOST_STEPS: usize = 24;
+/// The maximum number of examined wrong steps; for right steps four times as many.
+const MAX_STEPS: usize = 24;
 
-/// The number of pairs times bodies that are examined in a trace: some traits depend on all bodies between two.
-const WORK: usize = 4_000_000;
+/// The maximum number of pairs times bodies that are examined in a trace, because some traits depend on all bodies
+/// between two.
+const MAX_WORK: usize = 4_000_000;
 
-/// A trait is reported if pairs by chance have it in common with less than this probability, shared by the variants of
-/// its row.
+/// The probability below which a trait that random pairs have in common is reported, divided by the number of variants
+/// of its row.
 const CHANCE: f64 = 2e-3;
 
-/// One in this number of wrong pairs may lack a trait.
+/// The minimum number of wrong pairs per wrong pair that may lack a trait.
 const EXCEPTION: u64 = 20;
 
-/// The greatest number of traits that are reported, if several distinguish pairs equally well.
-const MOST_TOLD: usize = 3;
+/// The maximum number of reported traits, if several distinguish pairs equally well.
+const MAX_TRAITS: usize = 3;
 
 /// A trait that wrong pairs have in common.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -44,16 +46,16 @@ pub struct PairTrait {
     pub what: String,
     /// The trait's exact form.
     pub exact: String,
-    /// The number of right pairs that have it, too.
+    /// The number of right pairs that also have the trait.
     pub right: u64,
-    /// The number of wrong pairs that lack it.
+    /// The number of wrong pairs that lack the trait.
     pub exceptions: u64,
 }
 
-/// Returns the near pairs that wrong steps leave out or apply twice, and those that they apply once.
+/// Returns the near pairs that wrong steps omit or apply twice, and those that they apply once.
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
-    let steps = scan.wrong.iter().take(MOST_STEPS).chain(scan.right.iter().take(MOST_STEPS / 4));
-    let mut left = WORK / (scene.particles.len() + scene.edges.len() + 1);
+    let steps = scan.wrong.iter().take(MAX_STEPS).chain(scan.right.iter().take(MAX_STEPS / 4));
+    let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
     let variants: Vec<Variant> = traits::variants().collect();
     let of_kind = |kind| PairCounts { kind, times: [0; 3], traits: vec![[0; 3]; variants.len()] };
     let mut wrong = WrongPairs { first: None, kinds: PairKind::ALL.map(of_kind).into() };
@@ -86,15 +88,15 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     })
 }
 
-/// Returns the traits that distinguish pairs of a kind that are reported never (0) or twice (2) from those that are
-/// reported once: of several, the ones with the fewest exceptions.
+/// Returns the traits that distinguish pairs of a kind that are applied never (0) or twice (2) from those applied once.
+/// Of several traits, those with the fewest exceptions are returned.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.times[times], pairs.times[1]);
     let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
     let is_telling = |(one, exceptions, with): &(Variant, u64, u64)| {
-        // The share of all choices of as many pairs in which each has the trait.
+        // The share of all choices of as many pairs in which each pair has the trait.
         let chance: f64 = (1..=wrong - exceptions).map(|i| (with + i) as f64 / (right + i) as f64).product();
         EXCEPTION * exceptions <= wrong && 2 * with <= right && chance * (one.row.variants() as f64) < CHANCE
     };
@@ -102,7 +104,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
     let mut told: Vec<(Variant, u64, u64)> = Vec::new();
     for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
-        // Of a row's variants the strictest is reported.
+        // The strictest of a row's variants is reported.
         told.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
         told.push(one);
     }
@@ -112,10 +114,10 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
         right,
         exceptions,
     };
-    told.into_iter().take(MOST_TOLD).map(as_told).collect()
+    told.into_iter().take(MAX_TRAITS).map(as_told).collect()
 }
 
-/// Counts the pairs of all traces together for the explanations of a program.
+/// Adds the pairs of all traces together for the explanations of a program.
 pub(super) fn unite(told: &mut [Explanation], traces: &[&[Explanation]]) {
     for one in told.iter_mut() {
         let About::Pairs(sum) = &mut one.about else { continue };

@@ -1,16 +1,16 @@
-//! The traits by which pairs that a search loses, or doubles, may differ from the others: one row each.
+//! The traits by which omitted or doubled pairs may differ from others, one row each.
 use super::geometry::{BoundingBox, PlacedPair};
 use fosssim_model::sim::{PairKind, State};
 use fosssim_num::vector::{Vec2, length};
 
-/// A row of the table.
+/// A row of the trait table.
 pub(super) struct TraitRow {
-    /// The trait in plain words, behind "in all of them"; `{axis}` is horizontally or vertically.
+    /// The trait in plain words, after "in all of them"; `{axis}` is "horizontally" or "vertically".
     what: &'static str,
     /// The trait's exact form; `{axis}` is x or y, `{n}` a number.
     exact: &'static str,
     axes: &'static [TraitAxis],
-    /// The numbers with which it is tried, the strictest last.
+    /// The numbers with which the trait is tried, the strictest last.
     numbers: &'static [f64],
     holds: fn(&PlacedPair<'_>, usize, f64) -> bool,
 }
@@ -29,11 +29,11 @@ fosssim_num::closed_set! {
         Y = "vertically", "y";
         Either = "horizontally or vertically", "x or y";
     }
-    /// Returns the axis as a letter of formulas.
+    /// Returns the axis as a letter in formulas.
     letter
 }
 
-/// A row with its axis and its number.
+/// A row with an axis and a number.
 #[derive(Clone, Copy)]
 pub(super) struct Variant {
     pub row: &'static TraitRow,
@@ -67,7 +67,7 @@ pub(super) fn variants() -> impl Iterator<Item = Variant> {
     })
 }
 
-/// The axis of traits that are about no axis.
+/// The axes of traits that do not depend on an axis.
 const NO_AXIS: &[TraitAxis] = &[TraitAxis::X];
 const ONE_AXIS: &[TraitAxis] = &[TraitAxis::X, TraitAxis::Y];
 const ANY_AXIS: &[TraitAxis] = &[TraitAxis::Either, TraitAxis::X, TraitAxis::Y];
@@ -76,13 +76,13 @@ const COUNTS: &[f64] =
     &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 16.0, 20.0, 32.0, 50.0, 64.0, 100.0, 128.0];
 const FACTORS: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0];
 const SHARES: &[f64] = &[0.9, 0.75, 0.5, 0.25, 0.1];
-/// Steps before.
+/// The numbers of earlier steps.
 const STEPS: &[f64] = &[16.0, 8.0, 4.0, 2.0, 1.0];
 const LENGTHS: &[f64] = &[0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
 
 macro_rules! traits {
     ($($axes:ident $numbers:ident $what:literal $exact:literal $holds:expr;)*) => {
-        /// The table; of rows that distinguish pairs equally well, the first ones are reported.
+        /// The table of traits. If rows distinguish pairs equally well, the first ones are reported.
         const TRAITS: &[TraitRow] = &[$(TraitRow {
             what: $what, exact: $exact, axes: $axes, numbers: $numbers, holds: $holds,
         },)*];
@@ -102,20 +102,20 @@ traits! {
         };
     NO_AXIS NO_NUMBER "a particle is fixed" "fixed is 1"
         |pair, _, _| particles(pair).any(|particle| pair.moment.scene.particles[particle].fixed);
-    NO_AXIS NO_NUMBER "the bodies move apart or rest, although their places alone count"
+    NO_AXIS NO_NUMBER "the bodies move apart or rest, although only their positions matter"
         "(v1 - v2) . n is not positive" |pair, _, _| pair.is_parting();
-    NO_AXIS NO_NUMBER "the bodies approach, although their places alone count"
+    NO_AXIS NO_NUMBER "the bodies approach, although only their positions matter"
         "(v1 - v2) . n is positive" |pair, _, _| !pair.is_parting();
-    NO_AXIS NO_NUMBER "the bodies were apart at the start of the scene, as if places of then were used"
+    NO_AXIS NO_NUMBER "the bodies were apart at the start of the scene, as if those positions were used"
         "The boxes at time 0 do not overlap" |pair, _, _| !pair.is_near(&pair.moment.start);
-    NO_AXIS STEPS "the bodies were still apart shortly before, as if old places were used"
-        "The boxes some {n} steps before do not overlap" |pair, _, n| !pair.is_near(&earlier(pair, n));
-    NO_AXIS NO_NUMBER "there is no near pair with the numbers of particle and edge exchanged"
+    NO_AXIS STEPS "the bodies were still apart shortly before, as if old positions were used"
+        "The boxes about {n} steps earlier do not overlap" |pair, _, n| !pair.is_near(&earlier(pair, n));
+    NO_AXIS NO_NUMBER "the pair with exchanged numbers of particle and edge is not near"
         "(edge, particle) is used instead of (particle, edge)" |pair, _, _| is_lost_when_exchanged(pair);
-    NO_AXIS NO_NUMBER "the first body of its kind takes part" "i or j is 0" |pair, _, _| pair.numbers().contains(&0);
-    NO_AXIS NO_NUMBER "the last particle takes part" "i or j is the last number"
+    NO_AXIS NO_NUMBER "the first body of its kind is involved" "i or j is 0" |pair, _, _| pair.numbers().contains(&0);
+    NO_AXIS NO_NUMBER "the last particle is involved" "i or j is the last number"
         |pair, _, _| particles_of(pair).any(|one| one + 1 == pair.moment.scene.particles.len());
-    NO_AXIS NO_NUMBER "the last edge or half-plane takes part" "Its number is the last one"
+    NO_AXIS NO_NUMBER "the last edge or half-plane is involved" "Its number is the last one"
         |pair, _, _| match pair.pair.kind {
             PairKind::ParticleParticle => false,
             PairKind::ParticleEdge => pair.numbers()[1] + 1 == pair.moment.scene.edges.len(),
@@ -125,13 +125,13 @@ traits! {
         |pair, _, _| pair.pair.kind != PairKind::ParticleParticle && pair.numbers()[1] > 0;
     NO_AXIS COUNTS "the numbers of the particles are far apart" "|i - j| is greater than {n}"
         |pair, _, n| pair.pair.kind == PairKind::ParticleParticle && distance(pair.numbers()) > n;
-    ANY_AXIS NO_NUMBER "the bodies are on two sides of where the coordinate is zero {axis}" "0 is between their {axis}"
+    ANY_AXIS NO_NUMBER "the bodies are on different sides of zero {axis}" "0 is between their {axis}"
         |pair, axis, _| are_split(pair.points(), axis, f64::INFINITY, 0.0);
-    ANY_AXIS LENGTHS "a border at whole multiples of a round number is between the bodies {axis}"
+    ANY_AXIS LENGTHS "a multiple of a round number is between the bodies {axis}"
         "A multiple of {n} is between their {axis}" |pair, axis, n| are_split(pair.points(), axis, n, 0.0);
     ANY_AXIS LENGTHS "the bodies begin in different cells of a grid with round borders {axis}"
         "A multiple of {n} is between their smallest {axis}" |pair, axis, n| are_split(lows(pair), axis, n, 0.0);
-    ANY_AXIS FACTORS "a border at multiples of the largest diameter is between the bodies {axis}"
+    ANY_AXIS FACTORS "a multiple of the largest diameter is between the bodies {axis}"
         "A multiple of {n} times the largest diameter is between their {axis}"
         |pair, axis, n| are_split(pair.points(), axis, n * pair.moment.largest, 0.0);
     ANY_AXIS FACTORS "the bodies begin in different cells of a grid of the largest diameter {axis}"
@@ -140,29 +140,29 @@ traits! {
     ANY_AXIS FACTORS "the bodies begin in different cells of a grid from the lowest body on {axis}"
         "A multiple of {n} times the largest diameter from the smallest {axis} of all is between their smallest {axis}"
         |pair, axis, n| are_split(lows(pair), axis, n * pair.moment.largest, pair.moment.corner[axis]);
-    ANY_AXIS LENGTHS "both bodies reach over the same border at a round number {axis}"
+    ANY_AXIS LENGTHS "both bodies contain the same multiple of a round number {axis}"
         "Both hold a multiple of {n} on {axis}" |pair, axis, n| have_common_border(pair, axis, n);
-    ANY_AXIS FACTORS "both bodies reach over the same border at a multiple of the largest diameter {axis}"
+    ANY_AXIS FACTORS "both bodies contain the same multiple of the largest diameter {axis}"
         "Both hold a multiple of {n} times the largest diameter on {axis}"
         |pair, axis, n| have_common_border(pair, axis, n * pair.moment.largest);
-    ANY_AXIS NO_NUMBER "a body reaches to negative coordinates {axis}" "Its {axis} is less than 0"
+    ANY_AXIS NO_NUMBER "a body extends to negative coordinates {axis}" "Its {axis} is less than 0"
         |pair, axis, _| pair.boxes().iter().any(|[low, _]| low[axis] < 0.0);
     ANY_AXIS LENGTHS "a body is far from the origin {axis}" "|{axis}| is greater than {n}"
         |pair, axis, n| pair.boxes().iter().any(|[low, high]| high[axis].max(-low[axis]) > n);
-    ANY_AXIS FACTORS "no body is among the first ones of the scene {axis}"
+    ANY_AXIS FACTORS "neither body is among the first bodies of the scene {axis}"
         "Both are more than {n} times the largest diameter from the smallest {axis} of all"
         |pair, axis, n| lows(pair).iter().all(|low| low[axis] - pair.moment.corner[axis] > n * pair.moment.largest);
     ONE_AXIS NO_NUMBER
-        "a body that is apart from the first of the two begins between them {axis}, where a sweep may end"
+        "a body apart from the first one begins between the two {axis}, where a sweep may end"
         "One between them on {axis} does not overlap the first one on the other axis"
         |pair, axis, _| has_gap(pair, axis);
-    ONE_AXIS COUNTS "many bodies begin between the two {axis}, as if a sweep gave up early"
+    ONE_AXIS COUNTS "many bodies begin between the two {axis}, as if a sweep ended early"
         "More than {n} begin between them on {axis}" |pair, axis, n| pair.boxes_between(axis).count() as f64 > n;
     ONE_AXIS NO_NUMBER "the particle begins after the other body {axis}" "Its smallest {axis} is greater"
         |pair, axis, _| lows(pair)[0][axis] > lows(pair)[1][axis];
     ONE_AXIS NO_NUMBER "the particle begins before the other body {axis}" "Its smallest {axis} is less"
         |pair, axis, _| lows(pair)[0][axis] < lows(pair)[1][axis];
-    NO_AXIS NO_NUMBER "the particle's center is outside of the other body's box" "The box lacks r1 on a side"
+    NO_AXIS NO_NUMBER "the particle's center is outside the other body's box" "The box lacks r1 on a side"
         |pair, _, _| {
             let (center, [_, [low, high]]) = (pair.center(), pair.boxes());
             center.inf(&low) != low || center.sup(&high) != high
@@ -175,7 +175,7 @@ traits! {
         |pair, _, n| from_ends(pair).is_some_and(|[first, _]| first > n);
     NO_AXIS FACTORS "the particle is far from the edge's second end" "The distance is greater than {n} (r1 + r2)"
         |pair, _, n| from_ends(pair).is_some_and(|[_, second]| second > n);
-    ONE_AXIS NO_NUMBER "the edge's first end is the greater one {axis}" "The first end's {axis} is greater"
+    ONE_AXIS NO_NUMBER "the edge's first end has the larger coordinate {axis}" "The first end's {axis} is greater"
         |pair, axis, _| pair.edge().is_some_and(|edge| pair.place(edge.first)[axis] > pair.place(edge.second)[axis]);
     NO_AXIS FACTORS "the bodies are of unequal sizes" "One radius is more than {n} times the other"
         |pair, _, n| {
@@ -188,18 +188,18 @@ traits! {
     };
 }
 
-/// Returns the particles that are bodies of the pair.
+/// Returns the particles that are themselves bodies of the pair.
 fn particles_of(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     let bodies = if pair.pair.kind == PairKind::ParticleParticle { 2 } else { 1 };
     pair.numbers().into_iter().take(bodies)
 }
 
-/// Returns all particles that take part, ends of an edge, too.
+/// Returns all particles of the pair, including the ends of an edge.
 fn particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
     particles_of(pair).chain(pair.edge().into_iter().flat_map(|edge| [edge.first, edge.second]))
 }
 
-/// Returns the places of bodies a number of steps before, had they moved as they do now.
+/// Returns the positions of bodies a number of steps earlier, if they had moved with their current velocities.
 fn earlier(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
     let State { positions, velocities } = pair.moment.before;
     let h = pair.moment.scene.time_step;
@@ -219,7 +219,7 @@ fn distance([one, other]: [usize; 2]) -> f64 {
     one.abs_diff(other) as f64
 }
 
-/// Returns whether points are in different cells on an axis; with infinite cells, on two sides of the start.
+/// Returns whether points are in different cells on an axis; with infinite cells, on different sides of the start.
 fn are_split([one, other]: [Vec2; 2], axis: usize, size: f64, start: f64) -> bool {
     ((one[axis] - start) / size).floor() != ((other[axis] - start) / size).floor()
 }
@@ -235,19 +235,19 @@ fn has_gap(pair: &PlacedPair<'_>, axis: usize) -> bool {
     pair.boxes_between(axis).any(|body| body[0][across] > begins[1][across] || begins[0][across] > body[1][across])
 }
 
-/// Returns the part of an axis that two boxes have in common.
+/// Returns the overlap of two boxes on an axis.
 fn common_range([one, other]: [BoundingBox; 2], axis: usize) -> [f64; 2] {
     [one[0][axis].max(other[0][axis]), one[1][axis].min(other[1][axis])]
 }
 
-/// Returns how much the boxes overlap on an axis, as a share of the smaller box.
+/// Returns the length of the boxes' overlap on an axis, as a share of the smaller box.
 fn overlap(pair: &PlacedPair<'_>, axis: usize) -> f64 {
     let [from, to] = common_range(pair.boxes(), axis);
     let sides = pair.boxes().map(|[low, high]| high[axis] - low[axis]);
     (to - from) / sides[0].min(sides[1])
 }
 
-/// Returns the distance of the particle from the edge's ends, in sums of the radii.
+/// Returns the distances of the particle from the edge's ends, in units of the sum of radii.
 fn from_ends(pair: &PlacedPair<'_>) -> Option<[f64; 2]> {
     let edge = pair.edge()?;
     let reach = pair.radius() + pair.other_radius();

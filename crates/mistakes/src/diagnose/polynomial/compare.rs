@@ -1,8 +1,8 @@
 //! Compares a logged polynomial with a given one, up to a positive scale and round-off.
 //!
-//! [`fosssim_judge::fair`] decides what is right; this compares with wrong formulas, within the same bounds.
-//! Coefficients are aligned at the constant one. The course's library has dropped those that the log lacks, for being
-//! small.
+//! [`fosssim_judge::fair`] decides about right polynomials; this module compares with wrong formulas, within the same
+//! bounds. Coefficients are aligned at the constant term. The course's library has dropped missing coefficients because
+//! they are small.
 use fosssim_judge::fair::compare::compare;
 use fosssim_num::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
@@ -11,15 +11,15 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// The share of its bound by which a coefficient may be off; both sides round.
+/// The largest allowed deviation of a coefficient, relative to its bound; both sides are rounded.
 const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// Returns the logged coefficient of a power, `None` if it was dropped.
+/// Returns the logged coefficient of a power; `None` if it was dropped.
 pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
     logged.len().checked_sub(power + 1).map(|index| logged[index])
 }
 
-/// Returns the expected coefficient of a power, 0 beyond the degree.
+/// Returns the expected coefficient of a power; 0 above the degree.
 pub(super) fn expected_at(expected: &[BoundedValue], power: usize) -> BoundedValue {
     expected.len().checked_sub(power + 1).map_or(BoundedValue::default(), |index| expected[index])
 }
@@ -33,8 +33,8 @@ pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, s
     }
 }
 
-/// Returns whether the logged polynomial is `scale` times the expected one. A program may also get its coefficients
-/// from values of the polynomial, which spreads the rounding of the largest over all.
+/// Returns whether the logged polynomial is `scale` times the expected one. A program may also compute its coefficients
+/// from values of the polynomial, which spreads the rounding error of the largest over all.
 pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
     let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;
@@ -44,13 +44,13 @@ pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> 
     })
 }
 
-/// Returns the scale that brings the expected polynomial closest to the logged one, each coefficient weighing as much
-/// as it is sure; `None` if nothing sure is left, or if the scale is not positive.
+/// Returns the scale that brings the expected polynomial closest to the logged one, with each coefficient weighted by
+/// its certainty; `None` if no certain coefficient is left, or if the scale is not positive.
 pub(super) fn fitted_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64> {
     scale_fitted_to(expected, logged, |_| true)
 }
 
-/// Returns the scale as [`fitted_scale`] does, from the coefficients of some powers.
+/// Returns the scale like [`fitted_scale`], from the coefficients of the given powers.
 pub(super) fn scale_fitted_to(expected: &[BoundedValue], logged: &[f64], power: impl Fn(usize) -> bool) -> Option<f64> {
     let (mut above, mut below) = (0.0, 0.0);
     for power in (0..expected.len()).filter(|&index| power(index)) {
@@ -65,12 +65,12 @@ pub(super) fn scale_fitted_to(expected: &[BoundedValue], logged: &[f64], power: 
     (scale > 0.0 && scale.is_finite()).then_some(scale)
 }
 
-/// Returns whether a coefficient is more than rounding.
+/// Returns whether a coefficient exceeds round-off.
 pub(super) fn is_sure(coefficient: BoundedValue) -> bool {
     coefficient.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * coefficient.bound
 }
 
-/// Returns whether the logged polynomial is right: the expected one times some positive scale.
+/// Returns whether the logged polynomial is right: the expected polynomial times a positive scale.
 pub(super) fn is_right(expected: &[BoundedValue], logged: &[f64]) -> bool {
     compare(expected, logged, &[1.0]).is_ok()
 }

@@ -1,4 +1,4 @@
-//! The products that a wrong coefficient may contain: products of the formula's letters, and some foreign ones.
+//! The products that a wrong coefficient may contain: products of the formula's letters, and several foreign ones.
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{
     Inputs, Subject,
@@ -13,7 +13,7 @@ pub(super) struct Product {
     pub letters: Vec<usize>,
     /// The product's degree in the displacements.
     pub order: u8,
-    /// Whether it takes a quantity from outside the formula.
+    /// Whether the product contains a quantity from outside the formula.
     pub foreign: bool,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Dictionary {
 }
 
 impl Dictionary {
-    /// Creates the dictionary of a way to write a polynomial down.
+    /// Creates the dictionary of a reading of a polynomial.
     pub fn new(subject: Subject, formula: &'static Formula) -> Self {
         let own = formula.letters.len();
         let is_new = |extra: &&'static Letter| {
@@ -55,20 +55,20 @@ impl Dictionary {
         Self { letters, products }
     }
 
-    /// Returns the values of all products, in their order.
+    /// Returns the values of all products, in order.
     pub fn values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         let letters: Vec<BoundedValue> = self.letters.iter().map(|letter| (letter.value)(inputs)).collect();
         self.products.iter().map(|entry| product(&letters, &entry.letters)).collect()
     }
 
-    /// Returns the weight that the formula gives to a product in a coefficient.
+    /// Returns the formula's weight of a product in a coefficient.
     pub fn weight(&self, formula: &Formula, power: usize, product: usize) -> f64 {
         let letters = &self.products[product].letters;
         let same = formula.terms.iter().filter(|term| term.power == power && term.letters == letters);
         same.fold(0.0, |sum, term| sum + term.weight)
     }
 
-    /// Returns the two letters of a product, as products of their own; none of another one.
+    /// Returns the two letters of a product, as separate products; `None` for products of another length.
     pub fn factors(&self, product: usize) -> Option<[usize; 2]> {
         let &[one, two] = &self.products[product].letters[..] else { return None };
         let alone = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);
@@ -90,8 +90,8 @@ fn products_of_three(count: usize) -> impl Iterator<Item = Vec<usize>> {
         .flat_map(move |one| (one..count).flat_map(move |two| (two..count).map(move |three| vec![one, two, three])))
 }
 
-/// Returns the products with letters from outside: those of the quartic and of half-planes, which follow the formula's
-/// own `own` letters.
+/// Returns the products with letters from outside: those of the quartic and of half-planes, which follow the first
+/// `own` letters of the formula.
 fn foreign_products(subject: Subject, own: usize) -> Vec<Vec<usize>> {
     let mut lists = Vec::new();
     match subject {

@@ -1,4 +1,4 @@
-//! The sample that shows a mistake best: wrong, with inputs that are quickly written down, early.
+//! Finds the sample that shows a mistake best: wrong, early, and with short inputs.
 use super::study::{Case, PolynomialStudy};
 use crate::diagnose::{Example, ExamplePlace, ExampleValue};
 use fosssim_model::sim::{PairMotion, PointMotion};
@@ -7,7 +7,7 @@ use fosssim_student::assignments::t2m2::Input;
 
 fosssim_model::drops_leading!();
 
-/// Returns the example of a study, with the number of characters that its inputs take.
+/// Returns the example of a study, with the number of characters of its inputs.
 pub(super) fn smallest(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.right);
     let best = wrong.min_by_key(|case| (digits(case), case.sample.step, case.sample.pass))?;

@@ -1,14 +1,14 @@
 //! Finds the mistake that makes detection polynomials wrong.
 //!
-//! Pure functions over samples: the inputs of a detection and what the submission logged. A guess counts by the number
-//! of samples that it reproduces to round-off, including right ones. Guesses are, from simple to intricate: the whole
-//! list of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared
-//! separately), misunderstandings with a formula of their own, one letter of a formula (`slips`), and the terms of
-//! single coefficients (`terms`: sparse least squares over the products of dot products, with weights that are
-//! multiples of 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may
-//! be the one that is supplied, or the mathematically right one.
+//! Works on samples, which hold the inputs of a detection and the logged polynomials. A guess is rated by the number of
+//! samples that it reproduces to round-off, including right ones. Guesses are, from simple to intricate: the whole list
+//! of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared
+//! separately), misunderstandings with their own formula, one letter of a formula (`slips`), and the terms of single
+//! coefficients (`terms`: sparse least squares over the products of dot products, with weights that are multiples of
+//! 1/4). Correct polynomials are those of collisions.md 2, up to a positive factor each. The quintic may be the one
+//! that is supplied, or the mathematically right one.
 //!
-//! It reads no trace, judges nothing and never uses decisions or responses.
+//! The module reads no trace, judges nothing and never uses decisions or responses.
 mod compare;
 mod dictionary;
 mod example;
@@ -34,25 +34,25 @@ use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
 use std::collections::BTreeMap;
 use study::{Candidate, Case, PolynomialStudy};
 
-/// The greatest number of guesses about a polynomial that are kept in addition to the reported one.
-const MOST_CLAIMS: usize = 128;
+/// The maximum number of guesses about a polynomial that are kept in addition to the reported one.
+const MAX_CLAIMS: usize = 128;
 
-/// The greatest number of other keys that an explanation reports.
-const MOST_OTHERS: usize = 5;
+/// The maximum number of other keys that an explanation reports.
+const MAX_OTHER_KEYS: usize = 5;
 
 /// The error, relative to the size of its terms, up to which a polynomial is right except for round-off.
-const NEARLY: f64 = 1e-10;
+const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
-/// Guesses that are this much less likely than the best (see [`Candidate::cost`]) are not reported with it.
+/// The maximum difference in cost from the best guess (see [`Candidate::cost`]) of guesses that are reported with it.
 const AS_LIKELY: f64 = 1.6;
 
 /// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
-/// none is wrong; what is not reproduced everywhere comes last. A mistake that several polynomials share is reported
-/// once. Counts are of polynomials. A polynomial for which nothing is found gets an explanation with the key
-/// `unexplained` that reproduces nothing.
+/// none is wrong. Partial reproductions come last. A mistake that several polynomials share is reported once. Counts
+/// are of polynomials. A polynomial without an explanation gets one with the key `unexplained` , which reproduces
+/// nothing.
 ///
-/// Some hundred samples of each kind are enough, of different steps and pairs, including right ones; samples whose
-/// formulas overflow are left out. The samples of one kind should hold all of its polynomials.
+/// A few hundred samples of each kind, from different steps and pairs and including right ones, are enough. Samples
+/// whose formulas overflow are left out. The samples of one kind should hold all of its polynomials.
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let subjects = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
@@ -77,7 +77,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     explanations
 }
 
-/// Reports that no detection of a kind has all its polynomials.
+/// Returns an explanation if no detection of a kind has all its polynomials.
 fn missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
@@ -90,7 +90,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         subjects.extend(Subject::all_of_kind(kind).iter().skip(logged));
     }
     (!subjects.is_empty()).then(|| Explanation {
-        details: distinct(details, MOST_OTHERS),
+        details: distinct(details, MAX_OTHER_KEYS),
         reproduced: count,
         samples: count,
         ..Explanation::about("missing-polynomials", About::Polynomials { subjects, found: OfPolynomials::Missing })
@@ -104,21 +104,21 @@ struct Suspect<'a> {
 }
 
 impl Suspect<'_> {
-    /// Returns the guesses that reproduce everything.
+    /// Returns the guesses that reproduce all samples.
     fn full(&self) -> impl Iterator<Item = &Candidate> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
-    /// Returns all that would make it as it is: these guesses, and known mistakes. A word without a guess, where there
-    /// is nothing.
+    /// Returns all claims that would explain the polynomial: those of `guesses`, and known mistakes. Without any, a
+    /// single placeholder.
     fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
-        let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MOST_CLAIMS);
+        let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MAX_CLAIMS);
         let all: Vec<String> = guesses.chain(known_makers(&self.study)).collect();
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
-    /// Returns the explanation of this polynomial for itself; it has a guess.
+    /// Returns the separate explanation of this polynomial, which must have a guess.
     fn explanation(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.full());
         let first = claims(self.study.subject, best).swap_remove(0);
@@ -136,7 +136,7 @@ impl Suspect<'_> {
             example: example::smallest(&self.study).map(|(_, example)| example),
             same_as: distinct(
                 self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned()),
-                MOST_OTHERS,
+                MAX_OTHER_KEYS,
             ),
             claims: distinct(claims, usize::MAX),
             ..Explanation::about(best.guess.key(), About::Polynomials { subjects: vec![self.study.subject], found })
@@ -144,8 +144,8 @@ impl Suspect<'_> {
     }
 }
 
-/// Returns the claims of a guess about a polynomial, one word each ([`Explanation::claims`]): one for each possible
-/// exact form. The digest is of the program's formula, without the right one.
+/// Returns the claims of a guess about a polynomial, one for each possible exact form ([`Explanation::claims`]). The
+/// digest covers the program's formula, not the right one.
 fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
         return vec![format!("{subject:?}/{}/", candidate.guess.word())];
@@ -170,8 +170,8 @@ pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDeta
     format!("{subject:?}/{}/{:016x}", guess.word(), digest(&format!("{guess:?} {form:.5?}")))
 }
 
-/// Returns the known mistakes of this kind's formulas, or of handing them over, that make this polynomial as it was
-/// logged, in all samples.
+/// Returns the known mistakes in the formulas of this kind, or in passing them on, that give the logged polynomial in
+/// all samples.
 fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     let kind = study.subject.kind();
     let Some(number) = Subject::all_of_kind(kind).iter().position(|&other| other == study.subject) else {
@@ -192,7 +192,7 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
-/// Returns a line of the exact form of a guess about these polynomials.
+/// Returns a line of the exact form of a guess about `subjects`.
 fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     if let PolynomialDetail::Named { of_edges, .. } = &mut detail {
         *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
@@ -200,20 +200,20 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     Detail::Polynomial(detail)
 }
 
-/// Returns all guesses about a polynomial: the one that reproduces most first, of equal ones the likeliest.
+/// Returns all guesses about a polynomial. The guess that reproduces most comes first; of equal ones, the likeliest.
 fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(misunderstandings(study));
     all.extend(slips::candidates(study));
     all.extend(terms::candidates(study));
-    // A guess that reproduces no more than the right formula is no explanation.
+    // A guess that reproduces no more than the right formula is not an explanation.
     let plain = study.plainly_right();
     all.retain(|guess| guess.reproduced > plain);
     all.sort_by(|one, two| two.reproduced.cmp(&one.reproduced).then(one.cost.total_cmp(&two.cost)));
     all
 }
 
-/// Misunderstandings that have a name.
+/// Returns the misunderstandings that have a name.
 fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     let of = |named: &NamedEdit| {
         named.polynomial(study.subject, &study.cases.first()?.inputs)?;
@@ -230,12 +230,12 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     NAMED_EDITS.iter().filter_map(of).collect()
 }
 
-/// Returns a polynomial that is right except for more round-off than the rules allow, and that no guess explains
+/// Returns the explanation of a polynomial that is right except for more round-off than the rules allow, if no guess is
 /// better.
 fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);
-    (error < NEARLY && suspect.full().next().is_none()).then(|| Explanation {
+    (error < NEARLY_RIGHT_ERROR && suspect.full().next().is_none()).then(|| Explanation {
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         samples,
         example: example::smallest(study).map(|(_, example)| example),
@@ -246,7 +246,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     })
 }
 
-/// Returns one explanation with the polynomials for which there is none.
+/// Returns one explanation with all unexplained polynomials.
 fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
     let first = hopeless.first()?;
     let lines = |suspect: &Suspect| {
@@ -254,7 +254,7 @@ fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
         suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        details: distinct(hopeless.iter().flat_map(lines), MOST_OTHERS),
+        details: distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::smallest(&first.study).map(|(_, example)| example),
         claims: distinct(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())), usize::MAX),
@@ -268,8 +268,9 @@ fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
     })
 }
 
-/// Returns the key of general guesses that reproduces all samples of the most polynomials, among equals the likeliest;
-/// a polynomial's own likeliest guess counts for that polynomial. `None` if nothing reproduces all samples of any.
+/// Returns the key of general guesses that reproduces all samples of the most polynomials; among equals the likeliest.
+/// A polynomial's own likeliest guess counts for that polynomial. `None` if no key reproduces all samples of a
+/// polynomial.
 fn best_shared_key(open: &[Suspect]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
@@ -301,17 +302,17 @@ fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
     let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| detail(one.clone(), &subjects));
     let found = OfPolynomials::Guess(guesses[0].guess.clone());
     Explanation {
-        details: distinct(details, MOST_OTHERS),
+        details: distinct(details, MAX_OTHER_KEYS),
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
-        same_as: distinct(others.map(str::to_owned), MOST_OTHERS),
+        same_as: distinct(others.map(str::to_owned), MAX_OTHER_KEYS),
         claims: distinct(covered.iter().flat_map(|suspect| suspect.claims(suspect.full())), usize::MAX),
         ..Explanation::about(key, About::Polynomials { subjects, found })
     }
 }
 
-/// Returns the first distinct ones, in their order, no more than `most`.
+/// Returns the first `most` distinct values, in order.
 fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
     let mut list: Vec<T> = Vec::new();
     for one in all {

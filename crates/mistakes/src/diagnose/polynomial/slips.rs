@@ -1,4 +1,4 @@
-//! Right formulas with one wrong letter: scaled, of the wrong sign, or another dot product.
+//! Finds right formulas with one wrong letter: scaled, with the wrong sign, or replaced by another dot product.
 use super::study::{Candidate, PolynomialStudy};
 use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Substitute};
 use fosssim_num::bounded::BoundedValue;
@@ -8,13 +8,13 @@ use fosssim_student::assignments::t2m2::{
     ingredients::{Ingredient, ingredients},
 };
 
-/// A quantity that is tried in a letter's place.
+/// A quantity that is tried instead of a letter.
 enum Trial<'a> {
-    /// The letter itself, multiplied.
+    /// The letter itself, multiplied by a factor.
     Scaled(f64),
     /// Another letter.
     Letter(usize),
-    /// A dot product, perhaps with the wrong sign.
+    /// A dot product, possibly with the wrong sign.
     Dot(&'a Ingredient, &'a Ingredient, f64),
     /// The number 1.
     One,

@@ -1,33 +1,33 @@
-//! Sparse least squares: finds few columns that add up to a given vector.
+//! Sparse least squares: finds few columns whose weighted sum is a given vector.
 //!
-//! Small supports are tried exhaustively by the normal equations of unit columns, larger ones by orthogonal matching
+//! Small supports are tried exhaustively with the normal equations of unit columns, larger ones by orthogonal matching
 //! pursuit (Pati, Rezaiifar and Krishnaprasad, *Orthogonal matching pursuit*, 27th Asilomar Conference, 1993). The
-//! result is a proposal: the caller checks it against every sample.
+//! result is a proposal, which the caller must check against every sample.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A proposal: column indices, ascending, and their weights.
+/// A proposal: ascending column indices and their weights.
 pub(super) type Support = Vec<(usize, f64)>;
 
-/// A residual whose square is below this share of the target's counts as zero; the normal equations are not more
+/// The share of the target below which the square of a residual counts as zero; the normal equations are not more
 /// accurate.
 const SMALL_RESIDUAL: f64 = 1e-10;
 
-/// Columns closer to linear dependence than this are not used together.
+/// The minimum distance from linear dependence of columns that are used together.
 const INDEPENDENT: f64 = 1e-10;
 
-/// Most columns for which all triples are tried.
-const MOST_FOR_TRIPLES: usize = 110;
+/// The maximum number of columns for which all triples are tried.
+const MAX_FOR_TRIPLES: usize = 110;
 
-/// Most likely columns for which all quadruples are tried.
-const MOST_FOR_QUADRUPLES: usize = 26;
+/// The maximum number of likely columns for which all quadruples are tried.
+const MAX_FOR_QUADRUPLES: usize = 26;
 
-/// The longest support that matching pursuit finds.
-const LONGEST: usize = 8;
+/// The maximum size of a support in matching pursuit.
+const MAX_SUPPORT: usize = 8;
 
-/// Columns of the same length, ready to be fitted.
+/// Columns of equal length, prepared for fits.
 pub(super) struct DesignMatrix {
-    /// Original indices of the columns that are not zero, the likely columns first.
+    /// The original indices of the nonzero columns, the likely columns first.
     indices: Vec<usize>,
     unit: Vec<Vec<f64>>,
     norms: Vec<f64>,
@@ -36,7 +36,7 @@ pub(super) struct DesignMatrix {
 }
 
 impl DesignMatrix {
-    /// Prepares the columns. Columns in `likely` are tried in larger combinations, too.
+    /// Prepares the columns. Columns in `likely` are also tried in larger combinations.
     pub fn new(columns: &[Vec<f64>], likely: impl Fn(usize) -> bool) -> Self {
         let norm = |column: &[f64]| column.iter().map(|value| value * value).sum::<f64>().sqrt();
         let usable: Vec<usize> = (0..columns.len())
@@ -66,8 +66,8 @@ impl DesignMatrix {
         Self { indices, unit, norms, gram, likely: likely_count }
     }
 
-    /// Finds proposals for `target`, grouped by size: the caller takes the first group that holds a verified one. Each
-    /// call of `accept` gets one proposal and returns whether it holds. Returns the accepted ones of the smallest size.
+    /// Finds proposals for `target`, in the order of their sizes. Each call of `accept` gets one proposal and returns
+    /// whether it holds. Returns the accepted ones of the smallest size.
     pub fn supports(&self, target: &[f64], mut accept: impl FnMut(&Support) -> bool) -> Vec<Support> {
         let square = dot(target, target);
         if !(square > 0.0 && square.is_finite()) {
@@ -76,8 +76,8 @@ impl DesignMatrix {
         let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
         let problem = Problem { columns: self, fits: &fits, square };
         let all = self.indices.len();
-        let of_triples = if all > MOST_FOR_TRIPLES { self.likely.min(MOST_FOR_TRIPLES) } else { all };
-        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MOST_FOR_QUADRUPLES))] {
+        let of_triples = if all > MAX_FOR_TRIPLES { self.likely.min(MAX_FOR_TRIPLES) } else { all };
+        for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MAX_FOR_QUADRUPLES))] {
             let mut accepted = Vec::new();
             problem.search(&mut Partial::default(), 0, among, size, &mut |chosen| {
                 if let Some(support) = self.solve(chosen, &fits)
@@ -94,12 +94,12 @@ impl DesignMatrix {
         pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 
-    /// Runs matching pursuit among the first columns.
+    /// Runs matching pursuit among the first `among` columns.
     fn pursue(&self, target: &[f64], fits: &[f64], among: usize) -> Option<Support> {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
         let mut residual = target.to_vec();
-        while chosen.len() < LONGEST {
+        while chosen.len() < MAX_SUPPORT {
             let best = (0..among)
                 .filter(|column| !chosen.contains(column))
                 .map(|column| (column, dot(&self.unit[column], &residual).abs()))
@@ -129,7 +129,7 @@ impl DesignMatrix {
         Some(support)
     }
 
-    /// Solves the normal equations of unit columns by Cholesky's method; `None` if they are close to dependent.
+    /// Solves the normal equations of unit columns by Cholesky's method; `None` if the columns are nearly dependent.
     fn weights(&self, chosen: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
         let (size, count) = (chosen.len(), self.indices.len());
         let gram = DMatrix::from_fn(size, size, |row, column| self.gram[chosen[row] * count + chosen[column]]);
@@ -149,8 +149,8 @@ struct Problem<'a> {
     square: f64,
 }
 
-/// A started choice: its columns, Cholesky's factor row by row, the forward-substituted target, and the square
-/// explained.
+/// An incomplete choice: its columns, Cholesky's factor row by row, the forward-substituted target, and the explained
+/// square.
 #[derive(Default)]
 struct Partial {
     chosen: Vec<usize>,
@@ -212,7 +212,7 @@ fn dot(one: &[f64], two: &[f64]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Returns numbers between -1 and 1 without a pattern.
+    /// Returns pseudo-random numbers between -1 and 1.
     fn columns(count: usize, rows: usize) -> Vec<Vec<f64>> {
         let mut state = 7_u64;
         let mut next = || {

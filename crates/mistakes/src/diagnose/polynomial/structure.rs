@@ -1,4 +1,4 @@
-//! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, not a number.
+//! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, or NaN.
 use super::{
     compare::{expected_at, logged_at, matches},
     study::{Candidate, Case, PolynomialStudy, median, ratio},
@@ -12,7 +12,7 @@ use fosssim_student::assignments::t2m2::{Subject, formulas::readings};
 
 fosssim_model::drops_leading!();
 
-/// The relative rounding of a single-precision number.
+/// The unit roundoff of a single-precision number.
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 
 /// Returns the structural guesses that reproduce at least half of the wrong samples.
@@ -31,7 +31,7 @@ fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reprod
     Candidate { guess: Guess::List(guess), details, forms: Vec::new(), cost, reproduced }
 }
 
-/// Properties that need no prediction.
+/// Adds properties that need no prediction.
 fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, detail, cost, holds: &dyn Fn(&Case) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
@@ -60,7 +60,7 @@ fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     check(ListGuess::TooLong, None, 8.0, &|case| case.right || case.logged.len() > case.expected.len());
 }
 
-/// Returns whether all logged numbers are floats and close to the expected ones.
+/// Returns whether all logged numbers are single-precision and close to the expected ones.
 fn is_single(case: &Case) -> bool {
     let single = |value: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "whether the truncation changes it is the question")]
@@ -119,7 +119,7 @@ fn add_rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Polynomials of the same detection in each other's places.
+/// Adds guesses with exchanged polynomials of the same detection.
 fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for &other in Subject::all_of_kind(study.subject.kind()) {
         if other == study.subject {
@@ -134,7 +134,7 @@ fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Adds guesses with the polynomial's first or last coefficients only.
+/// Adds guesses with only the polynomial's first or last coefficients.
 fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
@@ -146,8 +146,8 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Returns every displacement with the same factor: velocities, for example, which shows as a power of it in each
-/// coefficient.
+/// Returns the guess that every displacement has the same factor (velocities, for example), which shows as powers of it
+/// in the coefficients.
 fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;

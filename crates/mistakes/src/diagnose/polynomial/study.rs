@@ -1,4 +1,4 @@
-//! All samples of one polynomial of one kind of pair, and how well a guess reproduces them.
+//! All samples of one polynomial of one kind of pair, and a measure of how well a guess reproduces them.
 use super::{
     Sample,
     compare::{coefficient_matches, expected_at, fitted_scale, is_right, is_sure, logged_at, matches, scale_fitted_to},
@@ -13,40 +13,40 @@ use fosssim_student::assignments::t2m2::{
 
 fosssim_model::drops_leading!();
 
-/// The greatest number of samples; more of them add nothing but time.
-const MOST_CASES: usize = 1200;
+/// The maximum number of samples; more of them only take time.
+const MAX_CASES: usize = 1200;
 
 /// The number of wrong samples on which a guess is tried before it is tried on all.
 const PROBES: usize = 12;
 
-/// One right sample in this number may speak against a guess, for round-off.
+/// The number of right samples per sample that may contradict a guess because of round-off.
 const SPARED: usize = 50;
 
-/// Ratios of coefficients to the expected ones are equal up to this: rounding of coefficients that cancel to a
-/// ten-thousandth of their terms, and room.
+/// The relative difference below which ratios to the expected coefficients are equal. It covers the rounding of
+/// coefficients that cancel to a ten-thousandth of their terms.
 const ALIKE: f64 = 1e-9;
 
 /// One polynomial of one sample.
 pub(super) struct Case<'a> {
-    /// The sample from which it comes.
+    /// The sample that holds the polynomial.
     pub sample: &'a Sample,
     /// The logged coefficients.
     pub logged: &'a [f64],
     /// The inputs of the formulas.
     pub inputs: Inputs,
-    /// The coefficients that should have been logged; of the quintic the supplied form.
+    /// The coefficients that should have been logged; for the quintic the supplied form.
     pub expected: Vec<BoundedValue>,
     /// Whether the logged polynomials are right, in any accepted form.
     pub right: bool,
-    /// The positive factor that the submission's polynomials seem to carry here.
+    /// The positive factor that the submission's polynomials seem to have in this sample.
     pub scale: f64,
 }
 
 /// The samples of one polynomial.
 pub(super) struct PolynomialStudy<'a> {
-    /// Which polynomial.
+    /// The polynomial that is studied.
     pub subject: Subject,
-    /// The samples that have it, with finite inputs.
+    /// The samples that have the polynomial, with finite inputs.
     pub cases: Vec<Case<'a>>,
     /// The number of wrong polynomials.
     pub wrong: usize,
@@ -58,14 +58,14 @@ pub(super) struct PolynomialStudy<'a> {
 pub(super) struct Candidate {
     /// The guess itself.
     pub guess: Guess,
-    /// The candidate's exact form.
+    /// The exact form of the guess.
     pub details: Vec<PolynomialDetail>,
     /// All exact forms that reproduce as much, the likeliest first; empty if there is only one.
     pub forms: Vec<Vec<PolynomialDetail>>,
-    /// The cost of the guess; a likelier guess costs less. It is 1 to 3 for a change of the whole list, about 3 for one
-    /// factor or sign, 4 for one wrong input, and 5 or more for wrong letters and foreign terms; edits add up.
+    /// The cost of the guess; a likelier guess costs less. The cost is 1 to 3 for a change of the whole list, about 3
+    /// for one factor or sign, 4 for one wrong input, and 5 or more for wrong letters and foreign terms; edits add up.
     pub cost: f64,
-    /// The number of samples that it reproduces.
+    /// The number of samples that the guess reproduces.
     pub reproduced: usize,
 }
 
@@ -106,8 +106,8 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or none,
-    /// and with any positive one; `None` if it reproduces fewer than half of the wrong samples. The flag is set if it
-    /// needed another scale.
+    /// or otherwise with any positive scale; `None` if it reproduces fewer than half of the wrong samples. The flag is
+    /// set if another scale was needed.
     pub fn count(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -122,8 +122,8 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// Counts the samples in which a property holds; `None` if it holds in fewer than half of the wrong ones, not in
-    /// the first of them, or only in some wrong ones and not in the right ones, which then contradict it.
+    /// Returns the number of samples with a property; `None` if fewer than half of the wrong ones have it, if the first
+    /// wrong one lacks it, or if right ones contradict it.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.right).is_some_and(|first| !holds(first)) {
             return None;
@@ -142,7 +142,7 @@ impl<'a> PolynomialStudy<'a> {
             }
         }
         let all_right = self.cases.len() - self.wrong;
-        // A mistake that reproduces all wrong samples may be made under a condition: right ones don't contradict it.
+        // A mistake that reproduces all wrong samples may depend on a condition, so right ones do not contradict it.
         let is_enough = wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED);
         is_enough.then_some(wrong + right)
     }
@@ -154,7 +154,7 @@ impl<'a> PolynomialStudy<'a> {
         self.cases.iter().filter(holds).count()
     }
 
-    /// Returns the greatest deviation of coefficients, relative to the size of their terms.
+    /// Returns the largest deviation of a coefficient, relative to the size of its terms.
     pub fn error(&self) -> f64 {
         let of_case = |case: &Case| {
             let scale = fitted_scale(&case.expected, case.logged).unwrap_or(case.scale);
@@ -165,15 +165,16 @@ impl<'a> PolynomialStudy<'a> {
                 let missing = if power < case.logged.len() { 0.0 } else { LEADING_COEFFICIENT };
                 if residual <= missing { 0.0 } else { residual / (scale * expected.bound) }
             });
-            // NaN is as far off as can be.
+            // NaN counts as the largest error.
             errors.fold(0.0_f64, |most, error| if error <= most { most } else { error })
         };
         self.cases.iter().map(of_case).fold(0.0_f64, |most, error| if error <= most { most } else { error })
     }
 
-    /// Finds the positive factor that most coefficients agree on: 1, another one for all samples, or one for each.
+    /// Finds the positive factor that most coefficients agree on: 1, another factor for all samples, or one for each
+    /// sample.
     fn find_scales(&mut self) {
-        // Another scale has to be better by a tenth: the middle ratio always agrees with some coefficient.
+        // Another scale must be better by a tenth, because the median ratio always agrees with some coefficient.
         let unscaled = self.agreement(|_| 1.0) * 1.05 + 0.1 * self.cases.len() as f64 + 1.0;
         let mut best: (f64, Option<Vec<f64>>) = (unscaled, None);
         for anchor in 0..=self.subject.degree() {
@@ -195,7 +196,7 @@ impl<'a> PolynomialStudy<'a> {
                 .map(|case| scale_fitted_to(&case.expected, case.logged, |power| powers.contains(&power)))
                 .map(|scale| scale.unwrap_or(usual))
                 .collect();
-            // One coefficient of each always agrees with a scale that was fitted to it.
+            // One coefficient of each sample always agrees with a scale that was fitted to it.
             let agreement = self.agreement(|index| each[index]) - self.cases.len() as f64;
             if agreement > best.0 {
                 best = (agreement, Some(each));
@@ -227,8 +228,8 @@ impl<'a> PolynomialStudy<'a> {
             .collect()
     }
 
-    /// Returns how many logged coefficients are as expected with these scales. Dropped ones prove nothing: with a small
-    /// scale all of them could be right.
+    /// Returns the number of logged coefficients that match the expected ones with the given scales. Dropped
+    /// coefficients prove nothing, because all of them could be right with a small scale.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
             let agrees = |power: &usize| {
@@ -240,7 +241,7 @@ impl<'a> PolynomialStudy<'a> {
         self.cases.iter().enumerate().map(agreeing).sum::<usize>() as f64
     }
 
-    /// Counts the samples in which each coefficient differs, one line per coefficient that does, with this name of the
+    /// Counts the samples in which each coefficient differs, one line per different coefficient, with `subject` as the
     /// polynomial.
     pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {
@@ -253,34 +254,34 @@ impl<'a> PolynomialStudy<'a> {
         (0..=self.subject.degree()).rev().filter_map(line).collect()
     }
 
-    /// Returns the ways to write this polynomial down.
+    /// Returns the readings of this polynomial.
     pub fn formulas(&self) -> impl Iterator<Item = (Reading, &'static Formula)> + use<> {
         let subject = self.subject;
         readings(subject).iter().enumerate().map(move |(number, formula)| (Reading { subject, number }, formula))
     }
 }
 
-/// Returns the logged coefficient over the expected one, if the difference is more than rounding.
+/// Returns the ratio of the logged to the expected coefficient, if the difference exceeds round-off.
 pub(super) fn ratio(case: &Case, power: usize) -> Option<f64> {
     let expected = expected_at(&case.expected, power);
     let ratio = logged_at(case.logged, power)? / expected.value;
     (expected.value.abs() > 1e-4 * expected.bound && ratio.is_finite()).then_some(ratio)
 }
 
-/// Returns the middle value; `None` of nothing.
+/// Returns the median; `None` without values.
 pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
 
-/// Returns `count` indices below `length`, evenly spread; all if there are fewer.
+/// Returns `count` indices below `length`, evenly spread; all indices if there are fewer.
 pub(super) fn spread(length: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(length);
     (0..count).map(move |index| index * length / count)
 }
 
-/// Returns whether a polynomial has only one sure coefficient: it fits anything of its sign at some scale, which proves
-/// nothing.
+/// Returns whether a polynomial has only one certain coefficient. It then fits any coefficient of the same sign at some
+/// scale, which proves nothing.
 fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     if predicted.iter().filter(|coefficient| is_sure(**coefficient)).count() < 2 {
         return matches(predicted, case.logged, case.scale);
@@ -288,7 +289,7 @@ fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     fitted_scale(predicted, case.logged).is_some_and(|scale| matches(predicted, case.logged, scale))
 }
 
-/// Forgives samples with a small scale: there the course's library drops coefficients that matter. The remaining ones
+/// Excuses samples with a small scale, for which the course's library drops relevant coefficients. The remaining ones
 /// may not show the scale, but the other samples do.
 fn forgive_small_scales(cases: &mut [Case]) {
     let scales = cases.iter().filter(|case| case.right).filter_map(|case| fitted_scale(&case.expected, case.logged));
@@ -298,17 +299,17 @@ fn forgive_small_scales(cases: &mut [Case]) {
     }
 }
 
-/// Keeps at most [`MOST_CASES`] samples, most of them wrong ones, in their order.
+/// Keeps at most [`MAX_CASES`] samples, most of them wrong, in order.
 fn thin(cases: Vec<Case>) -> Vec<Case> {
-    if cases.len() <= MOST_CASES {
+    if cases.len() <= MAX_CASES {
         return cases;
     }
     let chosen = |right: bool, count: usize| {
         let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].right == right).collect();
         spread(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
     };
-    let wrong = chosen(false, MOST_CASES * 3 / 4);
-    let right = chosen(true, MOST_CASES - wrong.len());
+    let wrong = chosen(false, MAX_CASES * 3 / 4);
+    let right = chosen(true, MAX_CASES - wrong.len());
     let mut keep = vec![false; cases.len()];
     wrong.into_iter().chain(right).for_each(|index| keep[index] = true);
     cases.into_iter().zip(keep).filter_map(|(case, keep)| keep.then_some(case)).collect()

@@ -1,4 +1,5 @@
-//! Wrong coefficients, one at a time: a wrong factor, or a few terms that are missing, too many or of the wrong weight.
+//! Finds wrong coefficients, one at a time: a wrong factor, or a few terms that are missing, surplus or wrongly
+//! weighted.
 use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
@@ -9,38 +10,38 @@ use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 
-/// The number of wrong samples of a fit, which uses half as many right ones.
-const MOST_ROWS: usize = 240;
+/// The maximum number of wrong samples in a fit, which uses half as many right ones.
+const MAX_ROWS: usize = 240;
 
-/// If fewer samples than this have the coefficient, samples that lack it are used, too.
-const FEWEST_ROWS: usize = 12;
+/// The minimum number of samples with the coefficient; with fewer, samples that lack it are used as well.
+const MIN_ROWS: usize = 12;
 
-/// Weights are multiples of this.
+/// The step of which weights are multiples.
 const WEIGHT_STEP: f64 = 0.25;
 
-/// The greatest distance of a fitted weight from such a multiple, in multiples: the normal equations leave this much of
-/// 16 digits.
+/// The maximum distance of a fitted weight from a multiple of the step, in steps; the normal equations keep this
+/// accuracy of 16 digits.
 const SNAPPING: f64 = 1e-3;
 
-/// Weights beyond this are no slip.
-const LARGEST_WEIGHT: f64 = 64.0;
+/// The largest weight that is considered a slip.
+const MAX_WEIGHT: f64 = 64.0;
 
-/// The greatest number of other explanations of a coefficient that are reported.
-const MOST_ALTERNATIVES: usize = 3;
+/// The maximum number of other explanations of a coefficient that are reported.
+const MAX_ALTERNATIVES: usize = 3;
 
-/// The greatest number of forms of a polynomial that are compared with those of other traces.
-const MOST_FORMS: usize = 64;
+/// The maximum number of forms of a polynomial that are compared with those of other traces.
+const MAX_FORMS: usize = 64;
 
-/// The cost of a coefficient that nothing explains.
-const UNKNOWN: f64 = 20.0;
+/// The cost of an unexplained coefficient.
+const UNKNOWN_COST: f64 = 20.0;
 
 /// A change of one coefficient.
 enum Edit {
-    /// The term carries a factor.
+    /// The coefficient has an additional factor.
     Factor(BoundedValue),
-    /// Products with their additional weights.
+    /// The coefficient has products with additional weights.
     Terms(Vec<(usize, f64)>),
-    /// Nothing was found.
+    /// The change is unknown.
     Unknown,
 }
 
@@ -56,7 +57,7 @@ impl FormulaGuess {
     }
 }
 
-/// Returns the reasons for each wrong coefficient, where at least one of them can be explained.
+/// Returns the guesses about all wrong coefficients, if at least one coefficient can be explained.
 pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }
@@ -65,7 +66,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     let fitting = Fitting::new(study, formula, reading);
     let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
     let guesses: Vec<FormulaGuess> = wrong.map(|power| fitting.explain(power)).collect();
-    // A polynomial of which nothing is known needs no candidate.
+    // A polynomial without any explained coefficient needs no candidate.
     guesses.iter().find(|guess| !matches!(guess.edit(), Edit::Unknown))?;
     let holds = |index: usize| {
         let case = &study.cases[index];
@@ -146,7 +147,7 @@ impl<'a> Fitting<'a> {
         let mut edits: Vec<(Edit, f64)> = terms.chain(factor).collect();
         edits.sort_by(|one, two| one.1.total_cmp(&two.1));
         if edits.is_empty() {
-            edits.push((Edit::Unknown, UNKNOWN));
+            edits.push((Edit::Unknown, UNKNOWN_COST));
         }
         FormulaGuess { power, edits }
     }
@@ -209,7 +210,7 @@ impl<'a> Fitting<'a> {
         if found.is_empty() { self.lost_products(power) } else { found }
     }
 
-    /// Terms whose letters are added instead of multiplied.
+    /// Returns the changes in which a term's letters are added instead of multiplied.
     fn lost_products(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let sums = (0..self.dictionary.products.len()).filter_map(|product| {
             let weight = self.dictionary.weight(self.formula, power, product);
@@ -219,7 +220,7 @@ impl<'a> Fitting<'a> {
         sums.filter(|sum| self.explains_all(power, &Edit::Terms(sum.clone()))).map(|sum| (sum, 6.0)).collect()
     }
 
-    /// Returns the degree in the displacements that the terms of a coefficient have.
+    /// Returns the degree in the displacements of a coefficient's terms.
     fn natural_order(&self, power: usize) -> u8 {
         let term = self.formula.terms.iter().find(|term| term.power == power);
         term.map_or(0, |term| term.letters.iter().map(|&letter| self.formula.letters[letter].order).sum())
@@ -241,34 +242,34 @@ impl<'a> Fitting<'a> {
         }
     }
 
-    /// Returns the samples that a fit uses: those in which the coefficient is wrong, and some others.
+    /// Returns the samples of a fit: those with a wrong coefficient, and several others.
     fn rows(&self, power: usize) -> Vec<usize> {
         let usable = |&index: &usize| {
             let logged = logged_at(self.case(index).logged, power);
             self.coefficient(index, power).bound > 0.0 && logged.unwrap_or(0.0).is_finite()
         };
         let all: Vec<usize> = (0..self.study.cases.len()).filter(usable).collect();
-        // A dropped coefficient is known to 1e-12 only, which spoils a fit.
+        // A dropped coefficient is known only to 1e-12, which is too inaccurate for a fit.
         let logged = |&index: &usize| logged_at(self.case(index).logged, power).is_some();
         let present: Vec<usize> = all.iter().copied().filter(logged).collect();
-        let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < FEWEST_ROWS { all } else { present }
+        let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < MIN_ROWS { all } else { present }
             .into_iter()
             .partition(|&index| self.holds(index, power, self.coefficient(index, power)));
         let few = |list: &[usize], count: usize| spread(list.len(), count).map(|index| list[index]).collect::<Vec<_>>();
-        let mut rows = few(&wrong, MOST_ROWS);
-        rows.extend(few(&right, MOST_ROWS / 2));
+        let mut rows = few(&wrong, MAX_ROWS);
+        rows.extend(few(&right, MAX_ROWS / 2));
         rows
     }
 }
 
-/// Rounds weights to multiples of [`WEIGHT_STEP`]; `None` if they are none.
+/// Rounds weights to multiples of [`WEIGHT_STEP`]; `None` if they are not close to multiples.
 fn snap(support: &Support) -> Option<Vec<(usize, f64)>> {
     support
         .iter()
         .map(|&(product, weight)| {
             let steps = weight / WEIGHT_STEP;
             let whole = steps.round();
-            let is_whole = (steps - whole).abs() <= SNAPPING && whole != 0.0 && weight.abs() <= LARGEST_WEIGHT;
+            let is_whole = (steps - whole).abs() <= SNAPPING && whole != 0.0 && weight.abs() <= MAX_WEIGHT;
             is_whole.then_some((product, whole * WEIGHT_STEP))
         })
         .collect()
@@ -287,7 +288,7 @@ impl Fitting<'_> {
             Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
             Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
             Edit::Factor(_) => CoefficientGuess::Factor,
-            // A coefficient that nothing explains is no guess of its own (see `candidate`).
+            // An unexplained coefficient is not a separate guess (see `candidate`).
             Edit::Unknown => CoefficientGuess::Several,
             Edit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(guess.power, change) {
@@ -301,7 +302,7 @@ impl Fitting<'_> {
         }
     }
 
-    /// Returns all polynomials that the guesses make, the likeliest first.
+    /// Returns all polynomials that follow from the guesses, the likeliest first.
     fn forms(&self, guesses: &[FormulaGuess]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
             let of_edit = |(edit, _): &(Edit, f64)| self.lines(guess.power, edit);
@@ -309,7 +310,7 @@ impl Fitting<'_> {
             let with = |form: &Vec<PolynomialDetail>| {
                 edits.iter().map(|lines| [form.as_slice(), lines].concat()).collect::<Vec<_>>()
             };
-            forms.iter().flat_map(with).take(MOST_FORMS).collect()
+            forms.iter().flat_map(with).take(MAX_FORMS).collect()
         })
     }
 
@@ -333,7 +334,7 @@ impl Fitting<'_> {
         };
         let is_of_terms = matches!(guess.edit(), Edit::Terms(_));
         let others = guess.edits[1..].iter().filter(|_| is_of_terms).filter_map(as_well);
-        self.lines(guess.power, guess.edit()).into_iter().chain(others.take(MOST_ALTERNATIVES)).collect()
+        self.lines(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
     }
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {

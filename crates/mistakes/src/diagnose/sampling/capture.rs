@@ -1,4 +1,4 @@
-//! The results of the reference in one step, kept in the form in which a trace holds them.
+//! The results of the reference in one step, in the form of a trace.
 use super::compare::StepRecords;
 use fosssim_model::{
     assignments::ImpulseList,
@@ -14,17 +14,17 @@ pub struct Capture {
     logs_impulses: bool,
     has_mid: bool,
     pass: Option<Pass>,
-    /// The records of the step; valid after it.
+    /// The records of the step; valid after the step.
     pub records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
     pub detections: Vec<(Pair, Pass, usize)>,
-    /// The events of the step: one bit per kind of pair that collided and stage in which it did, per number of rounds,
-    /// per kind of zone. Zero when nothing collided.
+    /// The events of the step, as bits for each kind of pair and stage with a collision, for the number of rounds, and
+    /// for each kind of zone. Zero if nothing collided.
     pub events: u32,
 }
 
 impl Capture {
-    /// Creates a capture for scenes of this collision type.
+    /// Creates a capture for scenes of a collision type.
     pub fn new(collision: &Collision) -> Self {
         let records = collision.handling().records;
         let logs_impulses = records.impulses != ImpulseList::Empty;

@@ -1,7 +1,7 @@
-//! The log of one step, and the equality of two such logs except for round-off.
+//! The log of one step, and its comparison with another log up to round-off.
 //!
-//! Polynomials count up to a positive factor, as only their signs matter; contacts in any order; states and contact
-//! vectors relative to the size of the numbers around them. NaN equals NaN only.
+//! Polynomials are compared up to a positive factor, because only their signs matter; contacts in any order; states and
+//! contact vectors relative to the size of the numbers around them. NaN equals only NaN.
 use fosssim_model::{
     scene::{Integrator, Scene},
     sim::State,
@@ -20,7 +20,7 @@ use fosssim_student::{Contact, Record};
 
 fosssim_model::drops_leading!();
 
-/// The greatest differences between equal numbers.
+/// The largest differences between equal numbers.
 #[derive(Debug, Clone, Copy)]
 pub struct Tolerance {
     /// The tolerance of a coefficient, relative to itself.
@@ -32,12 +32,12 @@ pub struct Tolerance {
     pub state: f64,
     /// The tolerance of a contact vector, relative to its length plus 1.
     pub normal: f64,
-    /// The tolerance of a time of impact (fraction of the step). A double zero is known to about the root of the unit
-    /// roundoff.
+    /// The tolerance of a time of impact, as a fraction of the step. A double zero is known to about the square root of
+    /// the unit roundoff.
     pub time: f64,
 }
 
-/// Round-off.
+/// The tolerance of round-off.
 pub const ROUND_OFF: Tolerance = Tolerance {
     coefficient: KNOWN_COEFFICIENT,
     floor: KNOWN_COEFFICIENT_FLOOR,
@@ -47,17 +47,17 @@ pub const ROUND_OFF: Tolerance = Tolerance {
 };
 
 impl Tolerance {
-    /// Returns the round-off, in steps of this scene.
+    /// Returns the tolerance of round-off in steps of a scene.
     pub fn for_scene(scene: &Scene) -> Self {
         let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::for_scene(scene).polynomials;
         Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
     }
 }
 
-/// The bound beyond which a difference is clearly no round-off.
+/// The tolerance beyond which a difference is clearly not round-off.
 pub const PLAIN: Tolerance = Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
-/// The bound for a step whose states were rounded to single precision before and after.
+/// The tolerance for a step whose start and end states were rounded to single precision.
 pub const SINGLE_PRECISION: Tolerance =
     Tolerance { coefficient: 1e-4, floor: 1e-4, state: 1e-5, normal: 1e-2, time: 1e-1 };
 
@@ -79,7 +79,7 @@ impl LoggedNumbers {
         numbers.copied().chain(self.impulses.iter().flat_map(of_impulse))
     }
 
-    /// Returns the memory that it takes, in bytes.
+    /// Returns the memory of the numbers, in bytes.
     pub fn bytes(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()
@@ -90,7 +90,7 @@ impl LoggedNumbers {
 /// The records of one step.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct StepRecords {
-    /// The mid record, if scenes have one.
+    /// The mid record, if the scene has one.
     pub mid: Option<LoggedNumbers>,
     /// The end record.
     pub end: LoggedNumbers,
@@ -103,18 +103,18 @@ impl StepRecords {
     }
 }
 
-/// The first place where the records of a step differ.
+/// The first difference between the records of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepDifference {
-    /// This polynomial of the end record.
+    /// A polynomial of the end record, by its index.
     Polynomial(usize),
     /// The number of polynomials.
     PolynomialCount,
-    /// The state in the middle; the particle.
+    /// The mid state, with the particle.
     MidState(usize),
     /// The impulse list of the end record.
     Impulses,
-    /// The state at the end; the particle.
+    /// The end state, with the particle.
     EndState(usize),
     /// The lists of the mid record.
     MidLists,
@@ -141,8 +141,7 @@ impl From<Record> for LoggedNumbers {
     }
 }
 
-/// Returns the first difference in the order in which a step computes; `None` when all is the same except for
-/// round-off.
+/// Returns the first difference in the order of a step's computation; `None` if the records are equal up to round-off.
 pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
@@ -190,7 +189,7 @@ pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool
     factor > 0.0 && factor.is_finite() && multiple(expected, actual, factor, by)
 }
 
-/// Returns whether both are the same, of a polynomial as formulas yield it, nothing dropped.
+/// Returns whether two polynomials are equal, for formulas whose coefficients were not dropped.
 pub fn same_formula(expected: &[BoundedValue], actual: &[f64], by: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
     same_polynomial(trim(&values), actual, by)
@@ -202,18 +201,18 @@ fn multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bo
     let length = expected.len().max(actual.len());
     (0..length).all(|power| {
         let (e, a) = (factor * power_of(expected, power), power_of(actual, power));
-        // A coefficient that was dropped on one side only is as small as the bound of dropping.
+        // A coefficient that was dropped on one side is at most as large as the limit for dropping.
         let dropped = if power < expected.len().min(actual.len()) { 0.0 } else { KNOWN_DROPPED * factor.max(1.0) };
         same_number(e, a, by.coefficient * e.abs() + by.floor * largest + dropped)
     })
 }
 
-/// Returns the coefficient of `t^power`; zero where the list ends before it.
+/// Returns the coefficient of `t^power`, or zero if the list is too short.
 fn power_of(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }
 
-/// Returns whether two lists hold the same contacts in some order.
+/// Returns whether two lists hold the same contacts in any order.
 fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
     if ours.len() != theirs.len() {
         return false;
@@ -230,7 +229,7 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
     sorted(ours).iter().zip(&sorted(theirs)).all(same)
 }
 
-/// Returns whether two contacts are the same except for round-off.
+/// Returns whether two contacts are equal up to round-off.
 pub fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
     let within = by.normal * (1.0 + largest(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
@@ -258,7 +257,7 @@ pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<
 
 fn same_number(ours: f64, theirs: f64, within: f64) -> bool {
     let distance = (ours - theirs).abs();
-    // The bound of an infinite number is infinite; nothing but itself is near it.
+    // The bound of an infinite number is infinite, so only the same infinity is near it.
     ours == theirs || (ours.is_nan() && theirs.is_nan()) || (distance <= within && distance.is_finite())
 }
 

@@ -1,9 +1,8 @@
-//! Gathers the data for explanations of polynomials: detections whose inputs are known for certain, and the trace's log
-//! of them.
+//! Collects the data for explanations of polynomials: detections with certain inputs, and their logged polynomials.
 //!
 //! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end
-//! is what the integrator makes of it, before any response. Therefore it uses the first pass of each step, and in
-//! hybrid scenes also the first pass of the geometric part, which starts from the mid record.
+//! is the integrator's result, before any response. The samples are therefore from the first pass of each step, and in
+//! hybrid scenes also from the first pass of the geometric part, which starts from the mid record.
 use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
@@ -13,24 +12,24 @@ use fosssim_model::{
 };
 use fosssim_num::polynomial::Polynomial;
 
-/// One detection of a submission: its inputs, and the polynomials that the submission handed to the root finder.
+/// One detection of a submission: its inputs, and the polynomials that the submission passed to the root finder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// The step, from 1.
     pub step: u32,
     /// The detection pass within the step, from 0.
     pub pass: u32,
-    /// The pair of the detection. Its kind is that of `motion`.
+    /// The pair of the detection, of the same kind as `motion`.
     pub pair: Pair,
     /// The inputs, from the submission's own states.
     pub motion: PairMotion,
     /// The logged coefficients, one list per polynomial of the kind in the trace's order (2 or 4); each highest power
-    /// first and without the small leading coefficients that the course's library drops. Fewer lists: the last
+    /// first and without the small leading coefficients that the course's library drops. With fewer lists, the last
     /// polynomials are missing.
     pub polynomials: Vec<Vec<f64>>,
 }
 
-/// Returns the particles of a pair, in the order of the assignment; no end of an edge that the scene does not have.
+/// Returns the particles of a pair, in the order of the assignment, without the ends of a missing edge.
 pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
     let (first, second) = (pair.first as usize, pair.second as usize);
     match pair.kind {
@@ -43,11 +42,11 @@ pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
     }
 }
 
-/// The greatest number of wrong and of right detections kept of each kind of pair.
-const MOST_WRONG: usize = 400;
-const MOST_RIGHT: usize = 200;
+/// The maximum number of wrong detections, and of right ones, that are kept per kind of pair.
+const MAX_WRONG: usize = 400;
+const MAX_RIGHT: usize = 200;
 
-/// The samples of a trace, gathered step by step; scenes without polynomials have none.
+/// The samples of a trace, collected step by step; scenes without polynomials have none.
 pub struct Detections<'a> {
     scene: &'a Scene,
     kinds: ByKind<OfKind>,
@@ -61,15 +60,15 @@ struct OfKind {
 }
 
 impl<'a> Detections<'a> {
-    /// Creates the collection for traces of this scene.
+    /// Creates the collection for traces of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         Self { scene, kinds: ByKind::default() }
     }
 
-    /// Gathers the samples of a step. A step without result belongs to a trace that is wrong beyond use; the samples so
-    /// far stay.
+    /// Collects the samples of a step. If the step has no result, the trace is unusable from here on, and the samples
+    /// so far are kept.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
-        let is_full = self.kinds.values().all(|kind| kind.wrong >= MOST_WRONG);
+        let is_full = self.kinds.values().all(|kind| kind.wrong >= MAX_WRONG);
         if is_full || !Layout::for_scene(self.scene).polynomials {
             return;
         }
@@ -79,7 +78,7 @@ impl<'a> Detections<'a> {
         reference.step(step, &frames.before.state, &mut Gatherer { scene, step, mid, log, kinds, sizes, next: None });
     }
 
-    /// Returns the samples that were gathered.
+    /// Returns the collected samples.
     pub fn into_samples(self) -> Vec<Sample> {
         self.kinds.into_values().flat_map(|kind| kind.samples).collect()
     }
@@ -92,22 +91,22 @@ struct Gatherer<'a> {
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
     kinds: &'a mut ByKind<OfKind>,
-    /// The number of polynomials that each detection logs; usually all of them.
+    /// The number of logged polynomials of each detection, usually all.
     sizes: Option<ByKind<usize>>,
-    /// The pass's number and the next polynomial in the list, for passes that are examined.
+    /// The number of the pass and its next polynomial in the list, for examined passes.
     next: Option<(u32, usize)>,
 }
 
 impl Gatherer<'_> {
-    /// Returns whether the submission lists a contact of this pair, which only `continuous-time` does.
+    /// Returns whether the submission lists a contact of the pair, which only `continuous-time` does.
     fn is_hit(&self, pair: Pair) -> bool {
         matches!(self.scene.collision, Collision::ContinuousTime { .. })
             && self.mid.impulses.iter().any(|impulse| impulse.pair() == Some(pair))
     }
 }
 
-/// Returns the number of polynomials that each detection logs, so that the lists consist of whole passes: all of them
-/// if that fits, else as many as possible. `None` if nothing fits. `pairs` are the pairs of one pass.
+/// Returns the number of logged polynomials of each detection for which the lists consist of whole passes: all
+/// polynomials if possible, otherwise as many as possible. `None` if no numbers fit. `pairs` are the pairs of one pass.
 fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize>> {
     let fits = |sizes: &ByKind<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
@@ -127,11 +126,11 @@ fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize
     }
     let changes = |sizes: &ByKind<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
     let is_empty = |sizes: &ByKind<usize>| there.iter().any(|kind| sizes[*kind] == 0);
-    // Fewest changes first: a student forgets something of one detection, seldom of two.
+    // Fewest changes first: a student may forget a part of one detection, but rarely of two.
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
     let mut fitting = choices.into_iter().filter(fits);
     let first = fitting.next()?;
-    // The numbers alone don't show which of two detections is empty, and a wrong guess would make everything look
+    // The numbers alone do not show which of two detections is empty, and a wrong guess would make everything look
     // wrong.
     let is_rival = |other: ByKind<usize>| changes(&other) == changes(&first) && is_empty(&other);
     let is_open = is_empty(&first) && fitting.any(is_rival);
@@ -159,7 +158,7 @@ impl Steer for Gatherer<'_> {
         let (Some((pass, index)), Some(sizes)) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];
         let lists = index..index + size;
-        // Polynomials behind a contact of the submission's own depend on a response that is not logged.
+        // Polynomials after a contact of the submission depend on a response that is not logged.
         self.next = (!self.is_hit(pair)).then_some((pass, lists.end));
         if lists.end > self.log.len() {
             self.next = None;
@@ -177,7 +176,7 @@ impl Steer for Gatherer<'_> {
                 forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
             });
         let kind = &self.kinds[pair.kind];
-        if if is_right { kind.right >= MOST_RIGHT } else { kind.wrong >= MOST_WRONG } {
+        if if is_right { kind.right >= MAX_RIGHT } else { kind.wrong >= MAX_WRONG } {
             return;
         }
         let motion = PairMotion::between(self.scene, pair, q_start, q_end);
@@ -187,8 +186,7 @@ impl Steer for Gatherer<'_> {
     }
 
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
-        // Later pairs of a continuous-time pass see the positions that the submission's responses left, which are not
-        // logged.
+        // Later pairs of a continuous-time pass use positions after the submission's responses, which are not logged.
         if matches!(self.scene.collision, Collision::ContinuousTime { .. }) && matches!(decision, Decision::Hit { .. })
         {
             self.next = None;

@@ -1,5 +1,5 @@
-//! The one way from a trace to the data of explanations: it is read once, and every step is searched for wrong records,
-//! for detections, and for values that are not numbers. The reference's work for all of it has one budget.
+//! Collects the data of explanations from a trace in one reading. Every step is searched for wrong records, for
+//! detections, and for values that are not finite. The reference's work for all of it has one budget.
 mod capture;
 mod compare;
 mod detections;
@@ -20,13 +20,13 @@ pub use source::{Source, StepFrames, StepReader};
 use super::{Explanation, not_finite::FirstNotFinite};
 use fosssim_model::scene::Scene;
 
-/// The material of explanations.
+/// The data for explanations.
 pub struct TraceSamples<'a> {
     /// The reference, with the rest of its budget.
     pub reference: Reference<'a>,
-    /// The explanation of the first value that is no finite number.
+    /// The explanation of the first value that is not finite.
     pub not_finite: Option<Explanation>,
-    /// The chosen wrong and right steps.
+    /// The selected wrong and right steps.
     pub scan: Scan,
     /// Detections with known inputs.
     pub detections: Vec<Sample>,

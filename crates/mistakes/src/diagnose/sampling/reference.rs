@@ -1,4 +1,4 @@
-//! The reference, which makes steps from a submission's own states.
+//! The reference simulator, run from a submission's own states.
 use fosssim_judge::budget::Budget;
 use fosssim_model::{
     scene::Scene,
@@ -6,27 +6,27 @@ use fosssim_model::{
 };
 use std::cell::Cell;
 
-/// Makes steps for all parts of an explanation, within one budget.
+/// Simulates steps for all parts of an explanation, within one budget.
 pub struct Reference<'a> {
     simulation: Simulation,
     budget: Budget<'a>,
-    /// The polynomials that programs with mistakes may still compute for this explanation.
+    /// The number of polynomials that programs with mistakes may still compute for this explanation.
     pub trials: Cell<u64>,
 }
 
-/// The polynomials that programs with mistakes may compute for one explanation, and the steps of root searches beyond
-/// the usual. Explanations of sample programs take up to four million. Lowered, mistakes in the company of others are
-/// no longer found; raised, a hostile trace takes longer to explain.
+/// The maximum number of polynomials that programs with mistakes may compute for one explanation, plus unusual steps of
+/// root searches. Explanations of sample programs take up to four million. With a lower limit, combined mistakes are no
+/// longer found; with a higher limit, a hostile trace takes longer to explain.
 const TRIALS: u64 = 5_000_000;
 
 impl<'a> Reference<'a> {
-    /// Creates the reference for a trace of this scene.
+    /// Creates the reference for a trace of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(TRIALS) }
     }
 
-    /// Returns the end of a step from this state; `None` if it has no result, or the budget is used up.
+    /// Returns the end state of a step from `before`; `None` if it has no result, or the budget is used up.
     pub fn step(&mut self, step: u32, before: &State, observer: &mut dyn Observer) -> Option<&State> {
         self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);

@@ -1,4 +1,4 @@
-//! Finds the wrong steps of a trace, and keeps some of them, as diverse as possible.
+//! Finds the wrong steps of a trace, and keeps a diverse selection of them.
 use super::{
     capture::Capture,
     compare::{
@@ -16,68 +16,68 @@ use fosssim_model::{
 use fosssim_num::tolerances::KNOWN_STATE;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Steps that are kept, wrong and right.
-const MOST_WRONG: usize = 200;
-const MOST_RIGHT: usize = 40;
-/// The first similar steps are kept, and then one out of this number.
+/// The maximum number of kept steps, wrong and right.
+const MAX_WRONG: usize = 200;
+const MAX_RIGHT: usize = 40;
+/// The number of similar steps that are all kept, after which only one out of this number is kept.
 const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
 /// The number of similar right steps that are kept.
 const RIGHT_ALIKE: u32 = 3;
-/// Wrong steps that are tried first.
+/// The number of wrong steps that are tried first.
 const PROBES: usize = 8;
-/// Memory that kept steps may take, in bytes.
-const MEMORY: usize = 24 << 20;
+/// The maximum memory of kept steps, in bytes.
+const MAX_MEMORY: usize = 24 << 20;
 
-/// A step that is kept.
+/// A kept step.
 #[derive(Debug)]
 pub struct KeptStep {
     /// The step's number, from 1.
     pub step: u32,
-    /// The submission's own state before it.
+    /// The submission's own state before the step.
     pub before: State,
     /// The submission's records.
     pub records: StepRecords,
     /// The first difference from the reference; `None` for right steps.
     pub difference: Option<StepDifference>,
-    /// Facts that show only with the record before.
+    /// Facts that depend on the previous record.
     pub context: Context,
-    /// Steps with the same signature are similar.
+    /// A number that similar steps share.
     pub signature: u64,
 }
 
-/// Facts that follow from the step together with the one before.
+/// Facts that follow from the step and the previous one.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Context {
-    /// Right, but behind the polynomials of the step before.
+    /// Whether the record would be right without the previous step's polynomials at its front.
     pub polynomials_kept: bool,
-    /// Right, but behind the impulses of the step before.
+    /// Whether the record would be right without the previous step's impulses at its front.
     pub impulses_kept: bool,
-    /// All positions or all velocities are numbers of single precision, and apart from that it is right.
+    /// Whether all positions or all velocities have single precision, and the step is otherwise right.
     pub single_precision: bool,
-    /// Velocities change by the expected change plus their change in the step before.
+    /// Whether velocities change by the expected change plus their change in the previous step.
     pub forces_kept: bool,
 }
 
 /// The parts of a trace on which the rows of the catalogue are tried.
 #[derive(Debug, Default)]
 pub struct Scan {
-    /// Wrong steps, in their order.
+    /// The wrong steps, in order.
     pub wrong: Vec<KeptStep>,
-    /// Right steps, in their order.
+    /// The right steps, in order.
     pub right: Vec<KeptStep>,
-    /// Facts about the trace besides its steps.
+    /// Facts about the trace in addition to its steps.
     pub outline: Outline,
 }
 
 impl Scan {
-    /// Leaves as many right steps as are kept at most.
+    /// Removes right steps down to the maximum number.
     pub fn keep_fewer_right(&mut self) {
-        self.right.truncate(MOST_RIGHT);
+        self.right.truncate(MAX_RIGHT);
     }
 
-    /// Returns the wrong steps to be tried first: one of each sort, the cheapest first. The first difference is always
-    /// among them, because it has to be reproduced.
+    /// Returns the wrong steps to be tried first: one of each kind, the cheapest first. The first difference is always
+    /// included, because it must be reproduced.
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
@@ -95,14 +95,14 @@ pub struct Scanner {
     scan: Scan,
     seen: BTreeMap<(bool, u64), u32>,
     memory: usize,
-    /// Wrong steps in which numbers end though something happens.
+    /// Wrong steps that end in values that are not finite, although they have events.
     not_finite: Vec<KeptStep>,
-    /// The number of the step before, and the change of its velocities.
+    /// The number of the previous step, and the change of its velocities.
     last: Option<(u32, Vec<f64>)>,
 }
 
 impl Scanner {
-    /// Creates the scan for traces of this scene.
+    /// Creates the scan for traces of a scene.
     pub fn new(scene: &Scene) -> Self {
         Self {
             has_mid: Layout::for_scene(scene).polynomials,
@@ -116,8 +116,8 @@ impl Scanner {
         }
     }
 
-    /// Returns the steps that were kept, with the outline of their trace. Those in which numbers end speak only where
-    /// no other step is wrong: several mistakes make the same NaN.
+    /// Returns the kept steps, with the outline of their trace. Steps that end in values that are not finite count only
+    /// if no other step is wrong, because several mistakes give the same NaN.
     pub fn into_scan(self, outline: Outline) -> Scan {
         let wrong = if self.scan.wrong.is_empty() { self.not_finite } else { self.scan.wrong };
         Scan { outline, wrong, ..self.scan }
@@ -147,12 +147,12 @@ impl Scanner {
         let number = *count;
         *count += 1;
         let wanted = if difference.is_some() {
-            self.scan.wrong.len() < MOST_WRONG && (number < FIRST_ALIKE || number.is_multiple_of(ALIKE))
+            self.scan.wrong.len() < MAX_WRONG && (number < FIRST_ALIKE || number.is_multiple_of(ALIKE))
         } else {
-            self.scan.right.len() < MOST_RIGHT && number < RIGHT_ALIKE
+            self.scan.right.len() < MAX_RIGHT && number < RIGHT_ALIKE
         };
-        // The first wrong step is kept at any cost: without one there is nothing to explain.
-        if !wanted || (self.memory > MEMORY && !self.scan.wrong.is_empty()) {
+        // The first wrong step is always kept, because without one there is nothing to explain.
+        if !wanted || (self.memory > MAX_MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }
         let context = difference.map_or(Context::default(), |_| {
@@ -222,7 +222,7 @@ impl Scanner {
         }
     }
 
-    /// Returns whether the step is right once `strip` has taken the lists of the step before off its records.
+    /// Returns whether the step is right after `strip` has removed the previous step's lists from its records.
     fn right_without(
         &self,
         before: &LenientFrame,

@@ -1,6 +1,6 @@
-//! The records of a trace as explanations read them: step by step, up to the end of what was kept.
+//! The records of a trace for explanations: step by step, up to the end of the kept part.
 use super::compare::LoggedNumbers;
-use fosssim_judge::kept::{KeptTrace, LONGEST};
+use fosssim_judge::kept::{KeptTrace, MAX_KEPT_BYTES};
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation},
@@ -8,20 +8,20 @@ use fosssim_model::{
 };
 use fosssim_num::tolerances::FIRST_RECORD;
 
-/// Records at the beginning of the trace that are kept whatever they hold, and their memory.
-const OPENING: usize = 25;
+/// The number of records at the beginning of the trace that are always kept.
+const OPENING_RECORDS: usize = 25;
 const OPENING_MEMORY: usize = 4 << 20;
 
 /// The records of a trace.
 pub struct Source<'a> {
-    /// The trace's beginning.
+    /// The beginning of the trace.
     beginning: &'a [u8],
     /// Whether the whole trace was kept.
     is_whole: bool,
 }
 
 impl<'a> Source<'a> {
-    /// Returns all of a trace.
+    /// Creates the source of a complete trace.
     pub fn whole(trace: &'a [u8]) -> Self {
         Self { beginning: trace, is_whole: true }
     }
@@ -36,23 +36,23 @@ impl<'a> From<&'a KeptTrace> for Source<'a> {
 /// The records of one step.
 #[derive(Debug, Default)]
 pub struct StepFrames {
-    /// The record before it.
+    /// The record before the step.
     pub before: LenientFrame,
-    /// The record in its middle, if the scene has one.
+    /// The mid record, if the scene has one.
     pub mid: LenientFrame,
-    /// The one at its end.
+    /// The end record.
     pub end: LenientFrame,
 }
 
-/// Facts about a trace besides its steps.
+/// Facts about a trace in addition to its steps.
 #[derive(Debug, Default)]
 pub struct Outline {
     /// The first records.
     pub opening: Vec<LoggedNumbers>,
     opening_memory: usize,
-    /// Records whose polynomials have small leading coefficients, which the course's library drops.
+    /// The number of records with small leading coefficients, which the course's library drops.
     pub padded: u64,
-    /// The number of records that the trace has, when its end was reached.
+    /// The number of records of the trace, if its end was reached.
     pub records: Option<u64>,
     /// Whether the trace continues after the scene's last step.
     pub is_longer: bool,
@@ -60,26 +60,27 @@ pub struct Outline {
 
 impl Outline {
     /// Returns whether the first record belongs to another scene. Programs do not compute it, so it differs from the
-    /// scene's initial state by no more than the rounding to single precision.
+    /// scene's initial state at most by rounding to single precision.
     pub fn is_of_other_scene(&self, scene: &Scene) -> bool {
         let Some(first) = self.opening.first() else { return false };
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let differs = |ours: &[f64], theirs: &[f64]| {
             let largest = ours.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
-            // A value that is not finite is in no scene.
+            // No scene has a value that is not finite.
             ours.iter().zip(theirs).any(|(o, t)| t.is_finite() && (o - t).abs() > FIRST_RECORD * largest)
         };
         let initial = simulation.state();
         differs(&initial.positions, &first.state.positions) || differs(&initial.velocities, &first.state.velocities)
     }
 
-    /// Reads a record. Returns false behind the last sound one: the rest of a damaged record proves no mistake.
+    /// Reads a record. Returns false after the last undamaged one, because the rest of a damaged record proves no
+    /// mistake.
     fn read(&mut self, reader: &mut Lenient<&[u8]>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,
             Ok(()) => {
                 self.padded += u64::from(!frame.plain);
-                if self.opening.len() < OPENING && self.opening_memory < OPENING_MEMORY {
+                if self.opening.len() < OPENING_RECORDS && self.opening_memory < OPENING_MEMORY {
                     let logged = LoggedNumbers::from(&*frame);
                     self.opening_memory += logged.bytes();
                     self.opening.push(logged);
@@ -101,11 +102,11 @@ pub struct StepReader<'a> {
     layout: Layout,
     reader: Lenient<&'a [u8]>,
     is_whole: bool,
-    /// The number of the next step; `None` behind the end.
+    /// The number of the next step; `None` after the end.
     next: Option<u32>,
-    /// The records of the step that was read last; before that the first record of the trace, if there is one.
+    /// The records of the last step read; before the first step, the first record of the trace, if there is one.
     pub frames: StepFrames,
-    /// Facts about the trace besides its steps.
+    /// Facts about the trace in addition to its steps.
     pub outline: Outline,
 }
 
@@ -119,7 +120,7 @@ impl<'a> StepReader<'a> {
         Self { layout, reader, is_whole: source.is_whole, next, frames, outline }
     }
 
-    /// Reads the next step; its number.
+    /// Reads the next step, and returns its number.
     pub fn next(&mut self) -> Option<u32> {
         if let Some(step) = self.next.take()
             && self.read_step(step)
@@ -141,7 +142,7 @@ impl<'a> StepReader<'a> {
             }
             return false;
         }
-        if self.reader.offset() > LONGEST as u64 {
+        if self.reader.offset() > MAX_KEPT_BYTES as u64 {
             return false;
         }
         let StepFrames { before, mid, end } = &mut self.frames;

@@ -1,5 +1,5 @@
 //! The evidence of the impulse lists of `continuous-time`: surplus and missing contacts, their vectors and times, and
-//! the order in which pairs are checked.
+//! the order of pairs.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -12,7 +12,7 @@ use crate::diagnose::{
 use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
 
-/// Returns the pairs of the first pass in another order: all its polynomials are there.
+/// Returns the explanation that the pairs of the first pass are in another order, if all its polynomials are there.
 pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
@@ -20,8 +20,8 @@ pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
         .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
-/// Returns whether nearly all pairs of the first pass are found as wholes, some of them out of their order. Pairs that
-/// a contact before them in the pass has moved are not found.
+/// Returns whether nearly all pairs of the first pass are complete but some are out of order. Pairs that an earlier
+/// contact of the pass has moved are not found.
 fn is_permuted(facts: &StepFacts) -> bool {
     let size = facts.pass_size();
     let (ours, theirs) = (&facts.expected.end.polynomials, &facts.actual.end.polynomials);
@@ -45,7 +45,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
                 && (first..end)
                     .all(|index| same_polynomial(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
         };
-        // The expected pair first, then the next one in the order, for pairs that are similar.
+        // The expected pair is tried first, then the next one in order, in case of similar pairs.
         let own = left.iter().position(|block| block.1 == at && is_here(block));
         let later = left.iter().position(|block| block.0 >= last && is_here(block));
         let Some(index) = own.or(later).or_else(|| left.iter().position(is_here)) else {
@@ -63,13 +63,13 @@ fn is_permuted(facts: &StepFacts) -> bool {
     misplaced > 0 && (found == pairs || is_spoilt)
 }
 
-/// A contact vector that is off by less of its length has lost digits, and nothing else.
+/// The relative error up to which a contact vector has only lost digits.
 const INEXACT: f64 = 1e-5;
 
 /// The contacts of all steps, with those of the reference.
 #[derive(Default)]
 struct ContactStage {
-    /// Kind and time of impact.
+    /// The kinds and times of impact of right contacts.
     right: Vec<(PairKind, f64)>,
     missed: Vec<(PairKind, f64)>,
     superfluous: Vec<(PairKind, f64)>,
@@ -77,16 +77,16 @@ struct ContactStage {
     times: Vec<(f64, f64)>,
 }
 
-/// Returns the fault in the contacts of `continuous-time`, whose polynomials are right.
+/// Returns the fault in the contacts of `continuous-time`, if its polynomials are right.
 pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.compare_step(facts));
-    // A wrong time may make decisions wrong, too.
+    // A wrong time may also make decisions wrong.
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
-/// Returns the fault in the contacts at the end of steps, each with the reference's: the first difference counts,
-/// because later ones in the pass may follow from it.
+/// Returns the fault in the contacts at the end of steps, each compared with the reference's. The first difference of a
+/// step counts, because later ones in the pass may follow from it.
 pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {
@@ -115,13 +115,13 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
 }
 
 impl ContactStage {
-    /// Compares contacts up to the first unexpected one; later ones depend on it.
+    /// Compares contacts up to the first unexpected one, because later ones depend on it.
     fn compare_step(&mut self, facts: &StepFacts) {
         let place = |theirs: &LoggedImpulse| {
             let theirs = theirs.pair()?;
             facts.detections.iter().position(|(pair, _)| *pair == theirs)
         };
-        // If a pass has more or fewer polynomials than expected, a contact can't be assigned to one of them.
+        // If a pass has more or fewer polynomials than expected, contacts cannot be assigned to polynomials.
         let is_whole = facts.actual.end.polynomials.len() == facts.expected.end.polynomials.len();
         let is_certain = |place: usize| {
             let end = facts.detections.get(place + 1).map_or(facts.expected.end.polynomials.len(), |(_, first)| *first);
@@ -160,7 +160,7 @@ impl ContactStage {
         }
     }
 
-    /// Returns whether vector and time are right.
+    /// Returns whether the vector and the time are right.
     fn compare(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
         let kind = hit.pair.kind;
         let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };
@@ -168,7 +168,7 @@ impl ContactStage {
             self.right.push((kind, hit.time));
             return true;
         }
-        // The vector is taken at the time: where that is wrong, it has to be.
+        // The vector belongs to the time: with a wrong time, it must be wrong as well.
         if same_impulse(&LoggedImpulse { normal: impulse.normal, ..expected }, impulse, &ROUND_OFF) {
             self.vectors.push((kind, hit.normal, impulse.normal));
         } else {
@@ -252,7 +252,7 @@ impl ContactStage {
     }
 }
 
-/// Returns the kind that all of these contacts have.
+/// Returns the kind that all contacts have in common.
 fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)

@@ -17,9 +17,9 @@ pub(super) struct Hit {
     pub(super) pair: Pair,
     pub(super) normal: Vec2,
     pub(super) time: f64,
-    /// The pass in which it is found, from 0.
+    /// The pass that finds the contact, from 0.
     pub(super) pass: usize,
-    /// The detection's place in the order of all detections of the step.
+    /// The index of the detection among all detections of the step.
     pub(super) place: usize,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct PassFacts {
     pub(super) stage: Stage,
     /// The index of its first polynomial.
     pub(super) first: usize,
-    /// The ends of particles when it begins.
+    /// The end positions of particles when the pass begins.
     pub(super) end: Vec<f64>,
 }
 
@@ -49,7 +49,7 @@ struct Events {
     zones: Vec<ZoneFacts>,
     detections: Vec<(Pair, usize)>,
     polynomials: usize,
-    /// Edge approaches in the other form that is right, by their index.
+    /// Edge approaches in the other accepted form, with their index.
     other_forms: Vec<(usize, Vec<f64>)>,
 }
 
@@ -60,7 +60,7 @@ struct StepEvents<'a> {
 }
 
 impl StepEvents<'_> {
-    /// Keeps the right form of an edge's approach, where it is another polynomial than the course's.
+    /// Keeps the right form of an edge's approach, if it differs from the course's.
     fn keep_other_form(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, .. } = detection;
         if pair.kind != PairKind::ParticleEdge {
@@ -105,7 +105,7 @@ impl Observer for StepEvents<'_> {
     }
 }
 
-/// The number of an edge's approach among its polynomials.
+/// The index of an edge's approach among its polynomials.
 const APPROACH: usize = 3;
 
 /// Steers a step so that nothing collides.
@@ -117,16 +117,16 @@ impl Steer for NoCollisions {
     }
 }
 
-/// A step of the submission and the reference's.
+/// A step of the submission, and the reference's.
 pub(super) struct StepFacts {
     /// Whether anything differs.
     pub(super) is_wrong: bool,
     pub(super) before: State,
-    /// The state to which the integrator alone leads.
+    /// The state after the integrator, without collisions.
     pub(super) prediction: State,
     pub(super) expected: StepRecords,
     pub(super) actual: StepRecords,
-    /// The number of right polynomials before the first one that differs, or before the end of one of the lists.
+    /// The number of right polynomials before the first difference, or before the end of one of the lists.
     pub(super) right_polynomials: usize,
     pub(super) hits: Vec<Hit>,
     pub(super) passes: Vec<PassFacts>,
@@ -136,7 +136,7 @@ pub(super) struct StepFacts {
 }
 
 impl StepFacts {
-    /// Returns the facts of a step; `None` if the reference has no result.
+    /// Returns the facts about a step; `None` if the reference has no result.
     pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
@@ -163,7 +163,7 @@ impl StepFacts {
         })
     }
 
-    /// Returns whether contacts are resolved as they are found, in the one pass of `continuous-time`.
+    /// Returns whether contacts are resolved immediately, in the single pass of `continuous-time`.
     pub(super) fn is_continuous(&self) -> bool {
         self.passes.first().is_some_and(|pass| pass.stage == Stage::ContinuousTime)
     }
@@ -174,17 +174,17 @@ impl StepFacts {
         ours.len() == theirs.len() && ours.iter().zip(theirs).all(|(one, other)| same_impulse(one, other, &ROUND_OFF))
     }
 
-    /// Returns the number of polynomials that a pass logs.
+    /// Returns the number of polynomials of a pass.
     pub(super) fn pass_size(&self) -> usize {
         self.passes.get(1).map_or(self.expected.end.polynomials.len(), |pass| pass.first)
     }
 
-    /// Returns the expected and the actual state in the middle of the step.
+    /// Returns the expected and the actual mid state.
     pub(super) fn middles(&self) -> Option<(&LoggedNumbers, &LoggedNumbers)> {
         Some((self.expected.mid.as_ref()?, self.actual.mid.as_ref()?))
     }
 
-    /// Returns whether the middle of the step is right: the state, and how many polynomials were logged by then.
+    /// Returns whether the middle of the step is right: the state, and the number of polynomials logged until then.
     pub(super) fn has_right_middle(&self) -> bool {
         self.middles().is_some_and(|(expected, actual)| {
             expected.polynomials.len() == actual.polynomials.len()
@@ -193,8 +193,8 @@ impl StepFacts {
         })
     }
 
-    /// Returns the numbers of passes that the submission logged before and after the middle of the step; `None` if
-    /// these are no whole passes.
+    /// Returns the numbers of passes that the submission logged before and after the middle of the step; `None` if the
+    /// polynomials do not fill whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
         let (size, (_, middle)) = (self.pass_size(), self.middles()?);
         let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());
@@ -202,8 +202,8 @@ impl StepFacts {
         is_whole.then(|| (first / size, (all - first) / size))
     }
 
-    /// Returns whether a pass that the submission logged (from 0) is about the motion from the start of the step to
-    /// these positions, judged by these pairs, which are named by their places in the order of a pass.
+    /// Returns whether a logged pass (from 0) is about the motion from the start of the step to the positions `end`,
+    /// judged by the pairs for whose index in the pass `is_asked` is true.
     pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {
@@ -220,14 +220,14 @@ impl StepFacts {
         })
     }
 
-    /// Returns whether a polynomial is wrong that depends on nothing but the state before the step.
+    /// Returns whether a polynomial is wrong that depends only on the state before the step.
     pub(super) fn has_wrong_formula(&self) -> bool {
         let (ours, theirs) = (self.expected.end.polynomials.len(), self.actual.end.polynomials.len());
         self.right_polynomials < ours.min(theirs).min(self.certain_polynomials())
     }
 
     /// Returns the number of polynomials that depend only on the state before the step: those of the first pass, in
-    /// `continuous-time` up to the first contact's own.
+    /// `continuous-time` up to the first contact.
     fn certain_polynomials(&self) -> usize {
         let contact = self.hits.first().filter(|_| self.is_continuous());
         let behind = contact.and_then(|hit| self.detections.get(hit.place + 1));
@@ -235,7 +235,7 @@ impl StepFacts {
     }
 }
 
-/// Expects the other form of an edge's approach if the trace logged that form: it is right, too.
+/// Replaces the expected approach of an edge by its other form if the trace logged that, because both are right.
 fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[(usize, Vec<f64>)]) {
     let theirs = &actual.end.polynomials;
     let is_right = |index: usize| same_polynomial(expected.end.polynomials.get(index), theirs.get(index), &ROUND_OFF);

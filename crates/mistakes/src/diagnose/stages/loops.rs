@@ -1,6 +1,6 @@
-//! The impulse rounds of `hybrid`: their number, the positions that they use, and the state that they hand over.
+//! The impulse rounds of `hybrid`: their number, the positions that they use, and their result.
 //!
-//! The polynomials of a round show where particles were when it began, which is the result of the round before.
+//! The polynomials of a round show the positions at its beginning, which are the result of the previous round.
 use super::{ALIKE, Explanation, events::StepFacts, observation, responses::Responses};
 use crate::diagnose::{
     LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber,
@@ -12,7 +12,7 @@ use fosssim_model::{
 };
 use std::cmp::Ordering;
 
-/// Returns the fault in the impulse rounds, whose single contacts are right.
+/// Returns the fault in the impulse rounds, if their single contacts are right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
     let Collision::Hybrid { max_iterations, .. } = scene.collision else { return None };
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_middle()).collect();
@@ -25,7 +25,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses)
         .or_else(|| later(scene, &wrong))
 }
 
-/// Returns the fault in the decision whether the geometric part follows, where the impulse rounds are right.
+/// Returns the fault in the decision whether the geometric part follows, if the impulse rounds are right.
 pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     let (mut left, mut superfluous, mut followed) = (0, 0, 0);
     for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
@@ -45,7 +45,7 @@ pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
-/// Returns the steps that log right polynomials, but too many or too few of them.
+/// Returns the explanation of steps that log right polynomials, but too many or too few of them.
 fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
@@ -56,7 +56,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
         }
     }
     let sort = |ordering: Ordering| seen.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
-    // Most of the faults have to be of this sort; the others may follow from it.
+    // Most of the faults must be of this kind; the others may follow from it.
     if seen.is_empty() || 2 * seen.len() < wrong.len() {
         return None;
     }
@@ -75,7 +75,8 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     Some(observation(StageFault::Rounds(number), details, seen.len()))
 }
 
-/// Returns the steps whose later rounds use the integrator's positions, which the first round has left.
+/// Returns the explanation of steps whose later rounds use the integrator's positions instead of those after the first
+/// round.
 fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
@@ -94,13 +95,13 @@ fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation
     (count > 0).then(|| observation(StageFault::RoundsOfPrediction, Vec::new(), count))
 }
 
-/// Returns the first number that differs by more than round-off.
+/// Returns the index of the first number that differs by more than round-off.
 fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     let within = ROUND_OFF.state.max(ALIKE * 1e-3);
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
-/// Returns the steps whose polynomials are all right, but not the state behind the loop.
+/// Returns the explanation of steps whose polynomials are all right, but whose state after the loop is wrong.
 fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
@@ -114,7 +115,7 @@ fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanatio
         velocities |= differs(&expected.state.velocities, &actual.state.velocities).is_some();
         let has_geometric = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
         *(if has_geometric { &mut ran_out } else { &mut ended }) += 1;
-        // The polynomials show the positions up to the last pass, and no velocity.
+        // The polynomials show the positions up to the last pass, but no velocities.
         or_response |= !facts.hits.iter().all(|hit| responses.is_right(hit.pair.kind));
     }
     let count = ran_out + ended;
@@ -134,14 +135,14 @@ fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanatio
     Some(observation(StageFault::HandedOver { quantity, when, or_response }, Vec::new(), count))
 }
 
-/// The contacts of the first round, as the second detection of a step shows them.
+/// The contacts of the first round, as seen from the second detection of a step.
 #[derive(Default)]
 struct SecondPass {
-    /// Isolated contacts that led to the right velocities.
+    /// The number of isolated contacts with right velocities afterwards.
     right: usize,
-    /// Isolated contacts that led to wrong velocities.
+    /// The number of isolated contacts with wrong velocities afterwards.
     wrong: usize,
-    /// Contacts that changed nothing.
+    /// The number of contacts that changed nothing.
     unresolved: usize,
     contacts: usize,
 }
@@ -166,7 +167,7 @@ impl SecondPass {
     }
 }
 
-/// Returns the steps whose later rounds are wrong although their first one is right.
+/// Returns the explanation of steps whose later rounds are wrong although the first one is right.
 fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
         let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();

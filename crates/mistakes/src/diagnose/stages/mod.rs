@@ -1,10 +1,10 @@
 //! Finds the wrong stage of a step if no known mistake explains it.
 //!
-//! In a trace the results of a stage follow from those of the one before: polynomials from the state, contacts from the
-//! polynomials, the state in the middle from the contacts, zones from that state. The first stage whose results are
+//! In a trace the results of a stage follow from those of the previous stage: polynomials from the state, contacts from
+//! the polynomials, the state in the middle from the contacts, zones from that state. The first stage whose results are
 //! wrong although everything before is right is therefore the one to check. The features that its results have in
-//! common (a factor, a kind of pair, a body) show the place. These are observations and no guesses. There is none for a
-//! stage that an earlier one may have spoilt, and none if a polynomial is wrong whose inputs are known.
+//! common (a factor, a kind of pair, a body) show the place. The results are observations, not guesses. No stage is
+//! reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
 mod contacts;
 mod events;
 mod loops;
@@ -22,17 +22,17 @@ use super::{
 use events::StepFacts;
 use fosssim_model::scene::{Collision, Scene};
 
-/// The greatest number of steps that are compared.
-const MOST_STEPS: usize = 120;
+/// The maximum number of steps that are compared.
+const MAX_STEPS: usize = 120;
 
-/// And the greatest number of polynomials; about a microsecond each.
-const MOST_POLYNOMIALS: usize = 200_000;
+/// The maximum number of polynomials that are compared; each takes about a microsecond.
+const MAX_POLYNOMIALS: usize = 200_000;
 
-/// Ratios that are this close are the same.
+/// The relative difference below which ratios are equal.
 const ALIKE: f64 = 1e-6;
 
-/// Returns the observation about the stages of these steps; `None` if polynomials whose inputs are known are wrong, or
-/// if nothing is wrong.
+/// Returns the observation about the stages of `steps`; `None` if polynomials with known inputs are wrong, or if
+/// nothing is wrong.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -43,9 +43,9 @@ pub(super) fn explain<'a>(
     }
     let mut work = 0;
     let facts: Vec<StepFacts> = steps
-        .take(MOST_STEPS)
+        .take(MAX_STEPS)
         .take_while(|kept| {
-            let goes_on = work < MOST_POLYNOMIALS;
+            let goes_on = work < MAX_POLYNOMIALS;
             work += kept.records.end.polynomials.len();
             goes_on
         })
@@ -76,7 +76,7 @@ fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> 
     }
 }
 
-/// Returns the value that all have in common, to round-off.
+/// Returns the value that all have in common, up to round-off.
 fn common_value(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -85,7 +85,7 @@ fn common_value(values: &[f64]) -> Option<f64> {
     (middle.is_finite() && values.iter().all(is_alike)).then_some(middle)
 }
 
-/// Returns the one on which they agree, else their range.
+/// Returns the common ratio, or otherwise the range of ratios.
 fn ratios(values: &[f64]) -> Ratios {
     let (low, high) = range(values.iter().copied());
     common_value(values).map_or(Ratios::Between(low, high), Ratios::All)

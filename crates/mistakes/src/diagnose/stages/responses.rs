@@ -1,4 +1,4 @@
-//! The changes that isolated contacts make, body by body.
+//! The changes caused by isolated contacts, body by body.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -12,24 +12,24 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, unit};
 use std::collections::BTreeMap;
 
-/// Changes below this are round-off (relative to the size of the numbers, and 1).
+/// The relative size (to the numbers, and 1) below which changes are round-off.
 const SMALL: f64 = 1e-11;
 
-/// The change that a contact made.
+/// The change caused by a contact.
 #[derive(Debug, Clone, Copy)]
 struct Change {
     /// The ratio to the expected value along the contact vector; `None` if that is zero.
     ratio: Option<f64>,
-    /// Whether anything across it changed, too.
+    /// Whether the component across the contact vector also changed.
     across: bool,
     is_right: bool,
 }
 
-/// The changes that isolated contacts made, whose bodies have no other contact in the step.
+/// The changes caused by isolated contacts, whose bodies have no other contact in the step.
 pub(super) struct Responses {
     changes: BTreeMap<ChangedQuantity, Vec<Change>>,
     contacts: usize,
-    /// Contacts of impulse rounds that changed nothing: whether they were found is unknown.
+    /// The number of contacts of impulse rounds that changed nothing; whether the program found them is unknown.
     unresolved: usize,
     in_rounds: bool,
 }
@@ -68,7 +68,7 @@ impl Responses {
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
-    /// Returns the fault in responses; nothing when those that can be seen are right.
+    /// Returns the fault in responses; `None` if all visible responses are right.
     pub(super) fn explain(&self, facts: &[StepFacts]) -> Option<Explanation> {
         let changes = &self.changes;
         let wrong: BTreeMap<ChangedQuantity, Vec<Change>> = changes
@@ -102,7 +102,7 @@ impl Responses {
         ))
     }
 
-    /// Contacts of impulse rounds that are not resolved.
+    /// Returns the explanation of contacts in impulse rounds that are not resolved.
     fn explain_unresolved(&self) -> Option<Explanation> {
         let fault = StageFault::Unresolved { all: self.contacts == 0 };
         (self.unresolved > 0).then(|| observation(fault, Vec::new(), self.unresolved))
@@ -125,7 +125,7 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
         Some(Stage::ContinuousTime) => (&facts.expected.end.state, &facts.actual.end.state),
         Some(Stage::Impulses { .. }) => {
             let Some((expected, actual)) = facts.middles() else { return Vec::new() };
-            // The state that a loop hands over when its rounds run out is another question.
+            // The result of a loop that has used all its rounds is checked separately.
             let ran_out = rounds < facts.passes.len();
             if ran_out || expected.polynomials.len() != actual.polynomials.len() {
                 return Vec::new();
@@ -137,8 +137,8 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
     hits().filter(is_alone).map(|hit| (hit, expected, actual)).collect()
 }
 
-/// Returns whether nothing changes the bodies of an impulse round's contact a second time: all passes behind it are
-/// about the positions that the loop hands over.
+/// Returns whether the bodies of an impulse round's contact do not change again: all later passes use the positions
+/// after the loop.
 fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
     let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return true };
     facts.is_continuous()
@@ -146,7 +146,7 @@ fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
             .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
 }
 
-/// Returns the steps with several contacts, all of which are right though the state is not.
+/// Returns the explanation of steps with several contacts, if each contact alone is right but the state is not.
 fn explain_many(facts: &[StepFacts]) -> Option<Explanation> {
     let is_right = |facts: &&StepFacts| {
         facts.is_wrong

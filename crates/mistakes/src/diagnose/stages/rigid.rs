@@ -1,7 +1,7 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right.
 //!
-//! Faults in zones show if other zones, moved rightly, lead to the places of the particles. Faults in the failsafe show
-//! in zones that are right: those of one contact, or whose particles move as one body.
+//! Faults in zones show if other zones, moved correctly, explain the particles' positions. Faults in the failsafe show
+//! in right zones: those of one contact, or whose particles move as one body.
 use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
@@ -15,17 +15,17 @@ use fosssim_model::{
 };
 use fosssim_num::vector::{Vec2, at, length, over};
 
-/// A turn by less is none.
-const LITTLE_TURN: f64 = 1e-6;
+/// The angle below which a rotation counts as zero, in radians.
+const MIN_TURN: f64 = 1e-6;
 
-/// Returns the fault in the geometric part, whose start is right.
+/// Returns the fault in the geometric part, if its start is right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation> {
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
     }
-    let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !hangs_on_round_off(scene, facts);
+    let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !may_be_round_off(scene, facts);
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
-    // Something else is wrong with the others, and may be with these.
+    // Other steps have another fault, which may affect these steps as well.
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
         return None;
     }
@@ -42,21 +42,21 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
 }
 
-/// Returns whether the first geometric pass differs only by round-off: it is right for the positions that the rounds
-/// left, which are right within round-off, and small coefficients depend on that.
-fn hangs_on_round_off(scene: &Scene, facts: &StepFacts) -> bool {
+/// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds,
+/// which are right within round-off, and small coefficients depend on that.
+fn may_be_round_off(scene: &Scene, facts: &StepFacts) -> bool {
     let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
     let pass = count_after(facts, 0) / facts.pass_size();
     let differs = facts.right_polynomials < count_after(facts, 1).min(facts.expected.end.polynomials.len());
     differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
 }
 
-/// Returns the index of the first polynomial behind this number of passes of the geometric part.
+/// Returns the index of the first polynomial after `passes` passes of the geometric part.
 fn count_after(facts: &StepFacts, passes: usize) -> usize {
     facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
-/// Returns the first geometric pass, if it is not about the positions that the impulse rounds left.
+/// Returns the explanation of a first geometric pass that does not use the positions after the impulse rounds.
 fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_wrong =
         |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < count_after(facts, 1);
@@ -72,8 +72,8 @@ fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
 }
 
-/// Returns the second geometric pass, if it is about the positions before the failsafe, although the failsafe moves
-/// something.
+/// Returns the explanation of a second geometric pass that uses the positions before the failsafe, although the
+/// failsafe moves a zone.
 fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
         let Some((_, middle)) = facts.middles() else { return false };
@@ -88,7 +88,7 @@ fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     (count == wrong.len()).then(|| observation(fault, Vec::new(), count))
 }
 
-/// Returns the fault behind the first round of zones.
+/// Returns the fault after the first round of zones.
 fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {
@@ -115,8 +115,8 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
-/// Returns the steps whose polynomials are all right, but not their end: the velocities of zones, where positions are
-/// right.
+/// Returns the explanation of steps whose polynomials are all right, but not their end: the velocities of zones with
+/// right positions.
 fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     let mut measured = MotionErrors::default();
     for facts in ends {
@@ -141,14 +141,14 @@ fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     observation(StageFault::Motion { wrong, or_zones: false }, details, ends.len())
 }
 
-/// The fates of the zones of first rounds.
+/// The results of the zones of first rounds.
 #[derive(Default)]
 struct ZoneMotions {
     fates: Vec<Fate>,
-    /// The ratios of velocities of zones that have to stop to their former velocities.
+    /// The ratios of the new to the previous velocities of zones that must stop.
     stopped: Vec<f64>,
     has_stopped_otherwise: bool,
-    /// Zones of several contacts, and of one, whose particles do not keep their distances.
+    /// The numbers of zones whose particles do not keep their distances: zones of several contacts, and of one contact.
     bent_of_many: usize,
     bent_of_one: usize,
     bent_stops: usize,
@@ -198,7 +198,7 @@ impl ZoneMotions {
         let all = self.fates.len();
         let wrong = all - self.count(Fate::Right);
         let count = |fault: WrongZones| self.count(Fate::Wrong(fault));
-        // Fates that prove the failsafe right come first.
+        // Results that prove the failsafe right come first.
         let faults = [
             WrongZones::NotMerged,
             WrongZones::Joined,
@@ -234,7 +234,7 @@ impl ZoneMotions {
     }
 }
 
-/// The ratios of the motion of zones that need not stop to the expected motion.
+/// The ratios of actual to expected motion of zones that need not stop.
 #[derive(Default)]
 struct MotionErrors {
     shifts: Vec<f64>,
@@ -262,11 +262,11 @@ impl MotionErrors {
                 [(&expected, ours), (end, theirs)].map(|(state, center)| turn(zone, start, from, state, center));
             let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
-                // Only the rest of such a turn can be seen: it shows neither the angle nor the direction.
-                self.turns.push(if (angle - right).abs() <= LITTLE_TURN { 1.0 } else { f64::NAN });
-            } else if right.abs() > LITTLE_TURN {
+                // Only the remainder of such a rotation is visible, which shows neither the angle nor the direction.
+                self.turns.push(if (angle - right).abs() <= MIN_TURN { 1.0 } else { f64::NAN });
+            } else if right.abs() > MIN_TURN {
                 self.turns.push(angle / right);
-            } else if angle.abs() > LITTLE_TURN {
+            } else if angle.abs() > MIN_TURN {
                 self.turns.push(f64::NAN);
             }
         } else {
@@ -275,7 +275,7 @@ impl MotionErrors {
         self.measure_velocities(scene, start, end, zone);
     }
 
-    /// Velocities over the motion from the start to the end of the step.
+    /// Compares velocities with the motion from the start to the end of the step.
     fn measure_velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
         for &one in &zone.particles {
             let motion = over(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
@@ -313,7 +313,7 @@ impl MotionErrors {
     }
 }
 
-/// Returns the rotations of zones, if some do not turn as expected.
+/// Returns the fault in the rotations of zones, if some do not turn as expected.
 fn describe_turn(ratios: &[f64]) -> WrongMotion {
     let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
     if wrong().all(|ratio| ratio.abs() <= ALIKE) {
@@ -333,7 +333,7 @@ fn is_one(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE)
 }
 
-/// Returns the angle by which the particles have turned about their center, radians.
+/// Returns the angle by which the particles have turned about their center, in radians.
 #[expect(clippy::disallowed_methods, reason = "angles are compared with a tolerance here: no bit is a contract")]
 fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);

@@ -1,5 +1,5 @@
-//! The features of wrong steps if traces log states: contacts at the end of a step, then velocities, then positions. An
-//! observation of these names the place to check, and guesses nothing.
+//! Finds the features of wrong steps if traces log states: contacts at the end of a step, then velocities, then
+//! positions. An observation names the place to check, without a guess.
 use super::{Explanation, common_value, contacts::explain_overlaps, observation};
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,
@@ -11,7 +11,7 @@ use fosssim_model::{
 };
 use fosssim_num::tolerances::KNOWN_STATE;
 
-/// A wrong number of a state, with its change and the expected change.
+/// A wrong number of a state, with its actual and its expected change.
 struct WrongEntry {
     index: usize,
     quantity: Quantity,
@@ -19,7 +19,7 @@ struct WrongEntry {
     expected: f64,
 }
 
-/// Returns the observation about these steps.
+/// Returns the observation about `steps`.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
     scene: &Scene,
@@ -27,7 +27,7 @@ pub(super) fn explain<'a>(
 ) -> Option<Explanation> {
     let mut capture = Capture::new(&scene.collision);
     let (mut contacts, mut entries, mut count) = (Vec::new(), Vec::new(), 0);
-    for kept in steps.filter(|kept| kept.difference.is_some()).take(super::MOST_STEPS) {
+    for kept in steps.filter(|kept| kept.difference.is_some()).take(super::MAX_STEPS) {
         reference.step(kept.step, &kept.before, &mut capture)?;
         count += 1;
         contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));
@@ -36,7 +36,7 @@ pub(super) fn explain<'a>(
     explain_overlaps(&contacts).or_else(|| explain_changes(scene, &entries, count))
 }
 
-/// Returns the velocities that are wrong, and the positions that do not follow from the velocities as they are.
+/// Returns the wrong velocities, and the positions that do not follow from the actual velocities.
 fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
     let (before, actual, expected) = (&kept.before, &kept.records.end.state, &capture.records.end.state);
     let is_wrong = |actual: f64, expected: f64| (actual - expected).abs() > KNOWN_STATE * (1.0 + expected.abs());
@@ -47,7 +47,7 @@ fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<Wrong
         if is_wrong(new, right) {
             entries.push(WrongEntry { index, quantity: Quantity::Velocity, actual: new - v, expected: right - v });
         }
-        // A simple response changes velocities behind the integrator.
+        // A simple response changes velocities after the integrator.
         let rate = match scene.integrator {
             Integrator::ExplicitEuler => v,
             _ if matches!(scene.collision, Collision::Simple { .. }) => continue,
@@ -92,7 +92,7 @@ fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Optio
     Some(observation(StageFault::Change(wrong), details, count))
 }
 
-/// Returns the code of a student of the scene's milestone that makes such changes.
+/// Returns the student code of the scene's milestone that changes `quantity`.
 fn cause(scene: &Scene, quantity: Quantity) -> Option<ChangeCause> {
     use Quantity::{Position, Velocity};
     match (scene.assignment(), &scene.collision, scene.integrator, quantity) {

@@ -1,5 +1,5 @@
-//! The fate of one impact zone in the first round of the geometric part: the particles that were moved as one body show
-//! which zones there were.
+//! The result of one impact zone in the first round of the geometric part. The particles that moved as one body show
+//! the actual zones.
 use super::events::StepFacts;
 use crate::diagnose::{WrongZones, sampling::bodies};
 use fosssim_model::{
@@ -11,18 +11,18 @@ use fosssim_num::{
     vector::{Vec2, at, length, over, put},
 };
 
-/// Differences below this are round-off (relative to the size of the numbers, and 1).
+/// The relative size (to the numbers, and 1) below which differences are round-off.
 pub(super) const SMALL: f64 = 1e-9;
-/// The largest zone of which every part is tried.
-const MOST_PARTICLES: usize = 8;
-const MOST_CONTACTS: usize = 5;
+/// The size of the largest zone of which every subset is tried.
+const MAX_PARTICLES: usize = 8;
+const MAX_CONTACTS: usize = 5;
 
-/// A set of particles that are moved together.
+/// A set of particles that move together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Group {
-    /// In ascending order.
+    /// The particles' indices, ascending.
     pub(super) particles: Vec<usize>,
-    /// Whether a half-plane is in it.
+    /// Whether the set contains a half-plane.
     pub(super) half_plane: bool,
 }
 
@@ -38,7 +38,7 @@ impl Group {
         Self::from_particles(particles, groups.iter().any(|group| group.half_plane))
     }
 
-    /// Returns whether it returns to its start.
+    /// Returns whether the zone must end where it started: it holds a half-plane or a fixed particle.
     pub(super) fn stops(&self, scene: &Scene) -> bool {
         self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
@@ -48,14 +48,14 @@ impl Group {
     }
 }
 
-/// The fate of a zone.
+/// The result of a zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fate {
     /// The expected zone.
     Right,
-    /// The zone was not moved or stopped as it should be.
+    /// The zone was not moved or stopped as expected.
     Wrong(WrongZones),
-    /// The zone moved as one rigid body, otherwise than it should.
+    /// The zone moved as one rigid body, but not as expected.
     Rigid,
     /// The zone's particles did not keep their distances, or did not stop.
     Bent,
@@ -66,14 +66,14 @@ pub(super) struct FirstRound<'a> {
     scene: &'a Scene,
     pub(super) facts: &'a StepFacts,
     pub(super) middle: &'a State,
-    /// The end of the step: the first round's effect on the examined zones.
+    /// The end state of the step, which shows the first round's effect on the examined zones.
     pub(super) end: &'a State,
     pub(super) zones: Vec<Group>,
-    /// The zone that each contact makes.
+    /// The zone of each contact.
     contacts: Vec<Group>,
-    /// The second geometric pass among those that were logged.
+    /// The index of the second geometric pass among the logged passes.
     second: usize,
-    /// The number of rounds in which zones were moved.
+    /// The number of rounds in which zones moved.
     rounds: usize,
 }
 
@@ -99,13 +99,13 @@ impl<'a> FirstRound<'a> {
         Some(Self { scene, facts, middle, end, zones, contacts, second, rounds })
     }
 
-    /// Returns whether the end of the step shows where the first round left these particles.
+    /// Returns whether the end of the step shows the positions of the group after the first round.
     pub(super) fn is_seen(&self, group: &Group) -> bool {
         let is_own = |pair| bodies(self.scene, pair).iter().all(|one| group.particles.contains(one));
         self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
     }
 
-    /// Returns whether a zone's particles end in the right place, so that it proves nothing.
+    /// Returns whether a zone's particles end in the right positions, so that the zone proves nothing.
     pub(super) fn is_at_rest(&self, zone: &Group) -> bool {
         self.are_at(&self.expected_state(zone), &zone.particles)
     }
@@ -121,7 +121,7 @@ impl<'a> FirstRound<'a> {
         own
     }
 
-    /// Returns the state that these groups leave, moved one after the other.
+    /// Returns the state after `groups` have moved, one after the other.
     fn moved_state(&self, groups: &[&Group]) -> State {
         let mut state = self.middle.clone();
         self.move_again(groups, &mut state);
@@ -134,8 +134,8 @@ impl<'a> FirstRound<'a> {
         }
     }
 
-    /// Returns whether the contacts of a zone, moved one after the other in every round, or not all together, lead
-    /// where its particles are.
+    /// Returns whether a zone's particles end where its contacts lead if they are moved separately in every round, or
+    /// not all together.
     pub(super) fn is_split(&self, zone: &Group) -> bool {
         self.partitions(zone).into_iter().any(|groups| {
             let groups: Vec<&Group> = groups.iter().collect();
@@ -159,7 +159,7 @@ impl<'a> FirstRound<'a> {
         self.moved_state(&[zone])
     }
 
-    /// Returns the fate of a zone that is seen.
+    /// Returns the result of a visible zone.
     pub(super) fn fate(&self, zone: &Group) -> Fate {
         let all = &zone.particles;
         let expected = self.expected_state(zone);
@@ -181,7 +181,7 @@ impl<'a> FirstRound<'a> {
         if stops { self.stop(zone, &stopped) } else { self.motion(zone) }
     }
 
-    /// Returns whether other zones than this one, each moved rightly, lead to the places of its particles.
+    /// Returns whether other zones, each moved correctly, explain the positions of the zone's particles.
     fn other_zones(&self, zone: &Group) -> Option<Fate> {
         if self.is_split(zone) {
             return Some(Fate::Wrong(WrongZones::NotMerged));
@@ -197,7 +197,7 @@ impl<'a> FirstRound<'a> {
             return Some(Fate::Wrong(WrongZones::Joined));
         }
         let foreign = self.foreign();
-        if zone.particles.len() > MOST_PARTICLES {
+        if zone.particles.len() > MAX_PARTICLES {
             return None;
         }
         // A part of the zone, alone or with particles of no zone.
@@ -212,7 +212,7 @@ impl<'a> FirstRound<'a> {
                 let moved = self.moved_state(&[group]);
                 is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
             };
-            // A particle that stays where it should be anyway was not left out.
+            // A particle with the expected position was not left out.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
             if is_left()
                 && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::from_particles(part.clone(), *flag)))
@@ -230,7 +230,7 @@ impl<'a> FirstRound<'a> {
         None
     }
 
-    /// Returns the particles of no zone that moved all the same.
+    /// Returns the particles of no zone that moved nevertheless.
     fn foreign(&self) -> Vec<usize> {
         if self.rounds > 1 {
             return Vec::new();
@@ -240,10 +240,10 @@ impl<'a> FirstRound<'a> {
         all.filter(|one| !is_in_zone(one) && !self.is_at(self.middle, *one)).collect()
     }
 
-    /// Returns the ways to make several zones of a zone's contacts, in the order of the first contact of each.
+    /// Returns the ways to form several zones from a zone's contacts, in the order of the first contact of each.
     fn partitions(&self, zone: &Group) -> Vec<Vec<Group>> {
         let contacts = self.contacts_of(zone);
-        if contacts.len() < 2 || contacts.len() > MOST_CONTACTS {
+        if contacts.len() < 2 || contacts.len() > MAX_CONTACTS {
             return Vec::new();
         }
         let mut all: Vec<Vec<Vec<&Group>>> = vec![Vec::new()];
@@ -264,7 +264,7 @@ impl<'a> FirstRound<'a> {
         several.map(|parts| parts.iter().map(|part| Group::union(part)).collect()).collect()
     }
 
-    /// Returns the fate of a zone that has to stop, all of whose particles belong together.
+    /// Returns the result of a zone that must stop, if all its particles belong together.
     fn stop(&self, zone: &Group, stopped: &State) -> Fate {
         let mut free = self.middle.clone();
         perform(self.scene, zone, false, &self.facts.before, &mut free);
@@ -318,8 +318,8 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
     }
 }
 
-/// Returns the angle by which the failsafe turns a group, radians: its angular momentum over its moment of inertia,
-/// both of the motion from the start of the step to this state (collisions.md 5).
+/// Returns the angle by which the failsafe turns a group, in radians: its angular momentum divided by its moment of
+/// inertia, both for the motion from the start of the step to `state` (collisions.md 5).
 pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -> f64 {
     let (center, to) = (center(scene, group, start), center(scene, group, state));
     let (mut momentum, mut inertia) = (0.0, 0.0);

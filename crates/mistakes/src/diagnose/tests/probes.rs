@@ -29,7 +29,7 @@ fn both_readers_give_the_scenes_back() {
 #[derive(Default)]
 struct Seen {
     /// Per kind and polynomial the greatest modulus per coefficient, from the lowest power.
-    greatest: ByKind<[[f64; 6]; PairKind::MOST_POLYNOMIALS]>,
+    greatest: ByKind<[[f64; 6]; PairKind::MAX_POLYNOMIALS]>,
     /// Hits per kind.
     hits: ByKind<usize>,
     /// A coefficient that is no integer, or too great to be exact.

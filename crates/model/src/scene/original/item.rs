@@ -1,9 +1,9 @@
-//! One element, mostly of a repeated kind, with the original's words about its attributes (scene-format.md 5).
+//! One element, mostly of a repeated kind, with the original's messages about its attributes (scene-format.md 5).
 use super::{Refusal, markup::Element, values};
 use crate::scene::model::Color;
 use fosssim_num::vector::Vec2;
 
-/// An element, the name that messages give it, and its number among its kind, if there may be several.
+/// An element, its name in messages, and its number among its kind, if there may be several.
 pub(super) struct Item<'e> {
     element: &'e Element<'e>,
     kind: &'static str,
@@ -12,13 +12,13 @@ pub(super) struct Item<'e> {
 }
 
 impl<'e> Item<'e> {
-    /// Returns all elements of one name; messages call them `kind`.
+    /// Returns all elements with the name `name`; messages call them `kind`.
     pub(super) fn all(
         elements: &'e [Element<'e>],
         name: &'static str,
         kind: &'static str,
     ) -> impl Iterator<Item = Self> {
-        // The original ends with success after a message about a half-plane.
+        // The original exits with success after a message about a half-plane.
         let exit_code = u8::from(name != "halfplane");
         elements
             .iter()
@@ -32,7 +32,7 @@ impl<'e> Item<'e> {
         Self { element, kind, number: None, exit_code: 1 }
     }
 
-    /// Returns `particle 3`, or `backgroundcolor`.
+    /// Returns the element's name in messages, such as `particle 3` or `backgroundcolor`.
     pub(super) fn who(&self) -> String {
         self.number.map_or_else(|| self.kind.to_owned(), |number| format!("{} {number}", self.kind))
     }
@@ -41,22 +41,22 @@ impl<'e> Item<'e> {
         self.element.attribute(name)
     }
 
-    /// Returns an integer; `value of` is in both messages.
+    /// Returns an integer; both messages contain `value of`.
     pub(super) fn index(&self, name: &str) -> Result<i32, Refusal> {
         self.require(name, "value of ", "integer", values::integer)
     }
 
-    /// Returns a scalar; `value of` is only in the message about a bad one.
+    /// Returns a scalar; only the message about a bad value contains `value of`.
     pub(super) fn numeric(&self, name: &str) -> Result<f64, Refusal> {
         self.require(name, "", "numeric", values::scalar)
     }
 
-    /// Returns two scalars of the sort of [`Item::numeric`].
+    /// Returns two scalars, read like [`Item::numeric`].
     pub(super) fn numerics(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
         Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
     }
 
-    /// Returns two scalars called real numbers; `value of` is in both messages.
+    /// Returns two scalars that messages call real numbers; both messages contain `value of`.
     pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
         let real = |name| self.require(name, "value of ", "real number", values::scalar);
         Ok(Vec2::new(real(x)?, real(y)?))

@@ -1,7 +1,7 @@
 //! The original's XML: elements of the first `scene` root, from text whose lines have been joined.
 //!
-//! A small in-situ parser without validation (scene-format.md 1.4). Closing tags close whatever is open, text and
-//! comments are skipped, and only the children of the scene are kept.
+//! A small in-situ parser without validation (scene-format.md 1.4). A closing tag closes the innermost open element,
+//! text and comments are skipped, and only the children of the scene are kept.
 use crate::scene::tag::is_space;
 use std::borrow::Cow;
 
@@ -13,20 +13,21 @@ pub(super) struct Element<'t> {
 }
 
 impl Element<'_> {
-    /// Returns the text of an attribute; of several with one name the first counts. A NUL (from `&#0;`) ends the text.
+    /// Returns the text of an attribute. If several have the same name, the first counts. A NUL (from `&#0;`) ends the
+    /// text.
     pub(super) fn attribute(&self, name: &str) -> Option<&[u8]> {
         let (_, value) = self.attributes.iter().find(|(found, _)| *found == name.as_bytes())?;
         Some(value.split(|&byte| byte == 0).next().unwrap_or_default())
     }
 }
 
-/// Joins the lines of a file as the original does: line feeds vanish, a NUL ends everything.
+/// Joins the lines of a file like the original: line feeds vanish, and a NUL ends the text.
 pub(super) fn join(bytes: &[u8]) -> Vec<u8> {
     // The original searches for the NUL after joining; the order makes no difference.
     bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()
 }
 
-/// Reads the children of the first root named `scene`, or nothing when there is no such root. The error is the text of
+/// Reads the children of the first root named `scene`, or nothing if there is no such root. The error is the text of
 /// the original's exception.
 pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static str> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
@@ -59,7 +60,7 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
                 depth += usize::from(opens);
             }
             (_, 0) => return Err("expected <"),
-            // Character references are translated in text, too, although no code reads the result.
+            // Character references in text are translated as well, although no code reads the result.
             _ => drop(cursor.value(b'<')?),
         }
     }
@@ -82,7 +83,7 @@ struct Cursor<'t> {
 }
 
 impl<'t> Cursor<'t> {
-    /// Returns the byte `ahead` of the place; 0 from the end on (the text itself holds no NUL).
+    /// Returns the byte at distance `ahead` from the current position; 0 after the end (the text itself holds no NUL).
     fn peek(&self, ahead: usize) -> u8 {
         self.text.get(self.at + ahead).copied().unwrap_or(0)
     }
@@ -99,7 +100,7 @@ impl<'t> Cursor<'t> {
         &rest[..length]
     }
 
-    /// Advances behind the next `end`.
+    /// Advances past the next `end`.
     fn skip_past(&mut self, end: &[u8]) -> Result<(), &'static str> {
         let found = self.rest().windows(end.len()).position(|window| window == end).ok_or(END)?;
         self.at += found + end.len();
@@ -113,7 +114,7 @@ impl<'t> Cursor<'t> {
         self.expect(b'>', CLOSE)
     }
 
-    /// Advances behind this byte.
+    /// Advances past `byte`.
     fn expect(&mut self, byte: u8, otherwise: &'static str) -> Result<(), &'static str> {
         if self.peek(0) != byte {
             return Err(otherwise);
@@ -122,8 +123,8 @@ impl<'t> Cursor<'t> {
         Ok(())
     }
 
-    /// Returns the node behind a `<` that does not close: an element and whether it has contents, or something to
-    /// ignore.
+    /// Returns the node that follows a `<`, unless it is a closing tag: an element and whether it has contents, or a
+    /// node to ignore.
     fn node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
         match self.peek(0) {
             b'?' => {
@@ -151,7 +152,7 @@ impl<'t> Cursor<'t> {
         }
     }
 
-    /// Reads to behind the `>` that is not in brackets.
+    /// Reads past the `>` that is not in brackets.
     fn document_type(&mut self) -> Result<(), &'static str> {
         let mut depth = 0_usize;
         loop {
@@ -195,7 +196,7 @@ impl<'t> Cursor<'t> {
         Ok((Element { name, attributes }, opens))
     }
 
-    /// Reads text up to `end` (not included) or to the end of everything, with its references translated.
+    /// Reads text up to `end` (not included) or to the end of the text, with its references translated.
     fn value(&mut self, end: u8) -> Result<Cow<'t, [u8]>, &'static str> {
         let plain = self.skip(|byte| byte != end && byte != b'&');
         if self.peek(0) != b'&' {

@@ -1,16 +1,16 @@
-//! The original program's lenient scene reader, rule for rule.
+//! The original program's lenient scene reader, reproduced rule by rule.
 //!
 //! The drop-in command must accept what the original accepts, read the same values from it and reject the rest with the
-//! same words, so this reader keeps its habits (scene-format.md 1 to 6): lines are joined without a separator, a number
-//! is whatever prefix looks like one, unknown names are ignored, the first problem ends everything. Authors of scenes
-//! are better served by the strict reader, [`crate::scene::read`].
+//! same messages. This reader therefore follows its rules (scene-format.md 1 to 6): lines are joined without a
+//! separator, the longest prefix that looks like a number counts, unknown names are ignored, and the first problem ends
+//! the reading. Authors of scenes are better served by the strict reader, [`crate::scene::read`].
 //!
 //! The original's XML parser accepts closing tags of any name, several roots and attributes without white space between
-//! them, and dies of some things that XML allows. No well-kept XML library behaves like that, hence the small parser
-//! in `markup`. It is iterative and borrows from the text, so that neither depth nor size can hurt it.
+//! them, and crashes on some valid XML. No maintained XML library behaves like that, so `markup` is a small parser. It
+//! is iterative and borrows from the text, so deep nesting and large files are safe.
 //!
-//! A scene that the original goes on to simulate from memory that is not its own (an index out of range) has no defined
-//! outcome; it is rejected as [`RefusalKind::Undefined`] in our own words.
+//! A scene for which the original would read out of bounds (an index out of range) has no defined outcome. It is
+//! rejected as [`RefusalKind::Undefined`] with a message of this program.
 
 mod item;
 mod markup;
@@ -24,13 +24,13 @@ pub use reader::read;
 
 use super::model::Scene;
 
-/// A scene as the original understands it.
+/// A scene as read by the original.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OriginalScene {
-    /// The scene. Text that is not UTF-8 is replaced there; trails of particles that do not exist are left out, since
-    /// they have no effect.
+    /// The scene. Text that is not UTF-8 is replaced; trails of particles that do not exist are left out, because they
+    /// have no effect.
     pub scene: Scene,
-    /// The description in the banner, byte for byte; the original's default when the scene has none.
+    /// The description in the banner, byte for byte; the original's default if the scene has none.
     pub description: Vec<u8>,
 }
 
@@ -38,14 +38,14 @@ pub struct OriginalScene {
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{explanation}")]
 pub struct Refusal {
-    /// Which way it ends.
+    /// The way in which the original ends.
     pub kind: RefusalKind,
-    /// The bytes on standard error, escape sequences and final newline included. For [`RefusalKind::Undefined`] these
-    /// are our own.
+    /// The bytes on standard error, including escape sequences and the final newline. For [`RefusalKind::Undefined`]
+    /// the message is this program's.
     pub stderr: Vec<u8>,
     /// The exit code as a shell shows it: 1, 0 for half-planes, 134 for broken XML.
     pub exit_code: u8,
-    /// The message in plain words, without escape sequences.
+    /// The message without escape sequences.
     pub explanation: String,
 }
 
@@ -54,9 +54,9 @@ pub struct Refusal {
 pub enum RefusalKind {
     /// The original prints a message and exits.
     Message,
-    /// The original dies of an uncaught exception (broken XML).
+    /// The original crashes with an uncaught exception (broken XML).
     Crash,
-    /// The original would read memory that is not its own; this program rejects the scene.
+    /// The original would read out of bounds; this program rejects the scene.
     Undefined,
 }
 
@@ -81,7 +81,7 @@ impl Refusal {
         Self { kind: RefusalKind::Message, stderr, exit_code, explanation }
     }
 
-    /// Returns the end by an uncaught exception of the XML parser.
+    /// Returns the crash by an uncaught exception of the XML parser.
     fn crash(what: &str) -> Self {
         let stderr =
             format!("terminate called after throwing an instance of 'rapidxml::parse_error'\n  what():  {what}\n");
@@ -89,7 +89,7 @@ impl Refusal {
         Self { kind: RefusalKind::Crash, stderr: stderr.into_bytes(), exit_code: 134, explanation }
     }
 
-    /// Returns an input without a defined outcome in the original.
+    /// Returns the rejection of an input without a defined outcome in the original.
     fn undefined(explanation: String) -> Self {
         let stderr = format!("{explanation}\n").into_bytes();
         Self { kind: RefusalKind::Undefined, stderr, exit_code: 1, explanation }

@@ -1,4 +1,4 @@
-//! From elements to a scene, in the original's order of evaluation (scene-format.md 3).
+//! Converts elements to a scene, in the original's order of evaluation (scene-format.md 3).
 use super::item::Item;
 use super::markup::{self, Element};
 use super::single::Singles;
@@ -6,13 +6,13 @@ use super::{OriginalScene, Refusal};
 use crate::scene::model::{Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene};
 use crate::{assignments::ForceKind, scene::forces::Source};
 
-/// Reads a scene as the original does.
+/// Reads a scene like the original.
 ///
 /// # Errors
 ///
-/// A [`Refusal`] with the original's words if the original rejects the scene or dies, and with ours if it would
-/// continue with memory that is not its own. Of both, a message of the original comes first, wherever it is in the
-/// file.
+/// A [`Refusal`] with the original's message if the original rejects the scene or crashes, and with this program's
+/// message if the original would read out of bounds. If there are both, a message of the original comes first, wherever
+/// it is in the file.
 pub fn read(bytes: &[u8]) -> Result<OriginalScene, Refusal> {
     let text = markup::join(bytes);
     let elements = markup::parse(&text).map_err(Refusal::crash)?.ok_or_else(|| {
@@ -81,7 +81,7 @@ fn check_type(written: &[u8]) -> Result<(), Refusal> {
     }
 }
 
-/// The repeated elements, and the first thing among them that the original reads garbage for.
+/// The repeated elements, and the first of them for which the original reads garbage.
 struct RepeatedElements<'e> {
     elements: &'e [Element<'e>],
     undefined: Option<String>,
@@ -92,8 +92,8 @@ impl<'e> RepeatedElements<'e> {
         Item::all(self.elements, name, name)
     }
 
-    /// Returns `index` if it is below `count`; otherwise 0, and the scene will be rejected.
-    fn within(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
+    /// Returns `index` if it is below `count`. Otherwise returns 0, and the scene is rejected later.
+    fn check_index(&mut self, item: &Item<'_>, what: &str, index: i32, count: usize) -> usize {
         match usize::try_from(index) {
             Ok(index) if index < count => index,
             _ => {
@@ -127,8 +127,8 @@ impl<'e> RepeatedElements<'e> {
         let mut edges = Vec::new();
         for item in self.all("edge") {
             let (i, j, radius) = (item.index("i")?, item.index("j")?, item.radius(0.015)?);
-            let first = self.within(&item, "particle", i, particles);
-            let second = self.within(&item, "particle", j, particles);
+            let first = self.check_index(&item, "particle", i, particles);
+            let second = self.check_index(&item, "particle", j, particles);
             edges.push(Edge { first, second, radius });
         }
         Ok(edges)
@@ -143,7 +143,7 @@ impl<'e> RepeatedElements<'e> {
     fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Refusal> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
-            // The original calls simple gravity a constant force in its messages, too.
+            // The original's messages call simple gravity a constant force as well.
             let called = if kind == ForceKind::SimpleGravity { ForceKind::Constant } else { kind };
             for item in Item::all(self.elements, kind.element(), called.element()) {
                 forces.push(kind.read(&mut ForceItem { item, scene: self, particles, edges })?);
@@ -152,7 +152,8 @@ impl<'e> RepeatedElements<'e> {
         Ok(forces)
     }
 
-    /// Colors of one kind of object. The original's check lets an edge or half-plane pass whose index is the count.
+    /// Returns the colors of one kind of object. The original's check accepts an edge or half-plane whose index equals
+    /// the count.
     fn colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Refusal> {
         let slack = usize::from(what != "particle");
         let mut colors = Vec::new();
@@ -165,12 +166,12 @@ impl<'e> RepeatedElements<'e> {
                 return Err(item.refusal("value of ", "i", &end));
             }
             let color = item.color()?;
-            colors.push((self.within(&item, what, index, count), color));
+            colors.push((self.check_index(&item, what, index, count), color));
         }
         Ok(colors)
     }
 
-    /// Returns the trails; a trail of a particle that does not exist has no effect in the original and is left out.
+    /// Returns the trails. A trail of a particle that does not exist has no effect in the original and is left out.
     fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Refusal> {
         let mut paths = Vec::new();
         for item in self.all("particlepath") {
@@ -200,12 +201,12 @@ impl Source for ForceItem<'_, '_> {
 
     fn edge(&mut self, name: &'static str) -> Result<usize, Refusal> {
         let index = self.item.index(name)?;
-        Ok(self.scene.within(&self.item, "edge", index, self.edges))
+        Ok(self.scene.check_index(&self.item, "edge", index, self.edges))
     }
 
     fn particle(&mut self, name: &'static str) -> Result<usize, Refusal> {
         let index = self.item.index(name)?;
-        Ok(self.scene.within(&self.item, "particle", index, self.particles))
+        Ok(self.scene.check_index(&self.item, "particle", index, self.particles))
     }
 
     fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Refusal> {

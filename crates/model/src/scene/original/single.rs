@@ -1,4 +1,4 @@
-//! The elements of which only the first counts, with the original's words about them (scene-format.md 4).
+//! Reads the elements of which only the first counts, with the original's messages about them (scene-format.md 4).
 use super::{Refusal, item::Item, markup::Element, values};
 use crate::{
     assignments::Integrator,
@@ -6,20 +6,20 @@ use crate::{
 };
 use fosssim_num::vector::Vec2;
 
-/// The children of the scene, looked up by name.
+/// The children of the scene, found by name.
 pub(super) struct Singles<'e>(pub(super) &'e [Element<'e>]);
 
 fn refuse<T>(text: &str) -> Result<T, Refusal> {
     Err(Refusal::message(text.as_bytes(), 1))
 }
 
-/// Returns a scalar of a single element, which messages call `kind`; the value must be `what`.
+/// Returns a scalar of a single element. Messages call the element `kind` and the expected value `what`.
 fn scalar(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<f64, Refusal> {
     let missing = || refuse(&format!("No {kind} '{name}' attribute specified. Exiting."));
     optional(element, kind, name, what)?.map_or_else(missing, Ok)
 }
 
-/// Reads a number that may be absent.
+/// Reads an optional number.
 fn optional(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<Option<f64>, Refusal> {
     let Some(text) = element.attribute(name) else { return Ok(None) };
     let bad = || refuse(&format!("Failed to parse '{name}' attribute for {kind}. Value must be {what}. Exiting."));
@@ -31,7 +31,7 @@ impl<'e> Singles<'e> {
         self.0.iter().find(|element| element.name == name.as_bytes())
     }
 
-    /// Returns the type of simulation as written; absent means the particle system.
+    /// Returns the type of simulation as written; a missing type means the particle system.
     pub(super) fn simulation_type(&self) -> &'e [u8] {
         self.first("simtype").and_then(|element| element.attribute("type")).unwrap_or_default()
     }
@@ -81,7 +81,7 @@ impl<'e> Singles<'e> {
         Ok((integrator, scalar(element, "integrator", "dt", "numeric")?))
     }
 
-    /// Reads the detection: every word but the contest's has no effect.
+    /// Reads the detection. Every word except the contest's has no effect.
     fn detection(&self) -> CollisionDetection {
         match self.first("collisiondetection").and_then(|element| element.attribute("type")) {
             Some(b"contest") => CollisionDetection::Contest,

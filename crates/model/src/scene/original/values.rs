@@ -1,8 +1,8 @@
-//! Numbers as a C++ stream extracts them: the longest prefix counts, the rest is ignored (scene-format.md 2).
+//! Reads numbers like a C++ stream: the longest prefix counts, the rest is ignored (scene-format.md 2).
 use crate::scene::numbers::{digits, mantissa};
 
-/// Returns a 64-bit float, correctly rounded. Fails without digits, with an exponent sign or letter without digits
-/// behind it, and on overflow; underflow gives zero.
+/// Returns a 64-bit float, correctly rounded. Fails without digits, with an exponent without digits, and on overflow;
+/// underflow gives zero.
 pub(super) fn scalar(text: &[u8]) -> Option<f64> {
     let text = trim(text);
     let mut end = mantissa(text)?;
@@ -15,7 +15,7 @@ pub(super) fn scalar(text: &[u8]) -> Option<f64> {
         }
         end += exponent;
     }
-    // The prefix has the shape that the standard library reads, with correct rounding.
+    // The prefix has the form that the standard library reads with correct rounding.
     let value: f64 = std::str::from_utf8(&text[..end]).ok()?.parse().ok()?;
     value.is_finite().then_some(value)
 }
@@ -34,7 +34,7 @@ pub(super) fn boolean(text: &[u8]) -> Option<bool> {
     }
 }
 
-/// Returns a scalar's conversion to a 32-bit integer: toward zero, and the smallest integer when it does not fit.
+/// Returns a scalar converted to a 32-bit integer: rounded toward zero, and the smallest integer if it does not fit.
 pub(super) fn truncate(value: f64) -> i32 {
     let whole = value.trunc();
     if whole >= f64::from(i32::MIN) && whole <= f64::from(i32::MAX) {

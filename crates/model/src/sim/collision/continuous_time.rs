@@ -1,6 +1,6 @@
-//! `continuous-time` handling: one pass, each hit answered immediately (collisions.md 4).
+//! `continuous-time` handling: one pass that responds to each hit immediately (collisions.md 4).
 //!
-//! Later pairs of the pass see the positions that earlier responses left.
+//! Later pairs of the pass use the positions after earlier responses.
 use super::{
     super::{
         bodies::Bodies,

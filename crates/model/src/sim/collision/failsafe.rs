@@ -6,15 +6,15 @@ use fosssim_num::{
 };
 
 /// Moves the particles of `zone` from `q_start` by the zone's mean displacement and rotation; `q` and `v` receive their
-/// new end positions and velocities. A zone with a half-plane or a fixed particle stays still instead.
+/// new end positions and velocities. A zone with a half-plane or a fixed particle does not move.
 ///
-/// A zone whose particles are all in one point has no moment of inertia, and becomes NaN as in the original.
+/// A zone whose particles are all at one point has no moment of inertia, and becomes NaN as in the original.
 pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q: &mut [f64], v: &mut [f64]) {
     let members = || zone.particles.iter().map(|&particle| particle as usize);
     if zone.half_plane || members().any(|particle| bodies.fixed[particle]) {
         for particle in members() {
             put(q, particle, at(q_start, particle));
-            // A product and not a zero: it keeps the sign, and makes NaN of infinity.
+            // A product instead of a zero: it keeps the sign, and makes NaN of infinity.
             put(v, particle, at(v, particle) * 0.0);
         }
         return;
@@ -56,7 +56,7 @@ mod tests {
     use crate::sim::samples::{Numbers, fix, particle, scene};
     use fosssim_num::vector::length;
 
-    /// Distances within the zone equal those of the start, and the mean displacement stays.
+    /// Distances within the zone equal those at the start, and the mean displacement is kept.
     #[test]
     fn a_zone_moves_rigidly_and_keeps_its_momentum() {
         let mut numbers = Numbers(17);

@@ -1,5 +1,5 @@
-//! `hybrid` handling: rounds of simultaneous impulses, then the geometric part that moves impact zones as rigid bodies
-//! (collisions.md 5). The penalty force that belongs to it is part of the integration.
+//! `hybrid` handling: rounds of simultaneous impulses, then the geometric part, which moves impact zones as rigid
+//! bodies (collisions.md 5). Its penalty force is part of the integration.
 use super::{
     super::{
         bodies::Bodies,
@@ -14,7 +14,7 @@ use super::{
     zones::{Builder, Zones},
 };
 
-/// Memory that the handler keeps from step to step: O(particles + hits).
+/// Memory that the handler reuses from step to step: O(particles + hits).
 #[derive(Debug, Clone, Default)]
 pub(super) struct HybridScratch {
     hits: Vec<Impulse>,
@@ -57,7 +57,7 @@ pub(super) fn handle<O: Observer>(
         if scratch.hits.is_empty() {
             done = true;
         } else {
-            // All responses of a round are computed from the positions before the first of them.
+            // All responses of a round are computed from the positions at its start.
             scratch.round_start.clone_from(&state.positions);
             let setting = Setting { bodies, law, q_start, q_end: &scratch.round_start };
             for impulse in &scratch.hits {
@@ -71,7 +71,7 @@ pub(super) fn handle<O: Observer>(
         synchronize(observer, state);
         return Ok(());
     }
-    // The geometric part continues with these values, unless a caller steers otherwise.
+    // The geometric part continues with these values, unless a caller sets others.
     scratch.state.clone_from(state);
     if synchronize(observer, state) == Resume::Synchronized {
         scratch.state.clone_from(state);
@@ -81,8 +81,8 @@ pub(super) fn handle<O: Observer>(
     Ok(())
 }
 
-/// Moves impact zones rigidly until a detection pass makes no zone grow. Every round joins zones, adds particles to
-/// one or adds a half-plane to one, so there are at most about 3N rounds.
+/// Moves impact zones rigidly until no zone grows in a detection pass. Every round joins zones, or adds particles or a
+/// half-plane to a zone, so there are at most about 3N rounds.
 fn move_zones<O: Observer>(
     bodies: &Bodies,
     law: &Law,
@@ -117,7 +117,7 @@ fn move_zones<O: Observer>(
     }
 }
 
-/// Makes one pass that collects its hits and answers none of them.
+/// Makes one pass that collects its hits without responses.
 fn detect<O: Observer>(
     bodies: &Bodies,
     detector: &mut Detector,
@@ -157,7 +157,7 @@ mod tests {
         }
     }
 
-    /// Rows of discs that a fast one drives together: each round moves a zone against the next disc.
+    /// Rows of discs that a fast disc pushes together: each round moves a zone against the next disc.
     #[test]
     fn rounds_go_on_until_no_zone_grows() {
         let xml = include_bytes!("../../../../../assets/t2m2/GeometricTests/rows-collected-over-many-rounds.xml");

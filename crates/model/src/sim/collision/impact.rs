@@ -1,4 +1,4 @@
-//! The time at which a pair meets, if it has to be known.
+//! Computes a pair's time of impact, if it is needed.
 use super::super::{
     observer::Time,
     pair::Pair,
@@ -7,7 +7,7 @@ use super::super::{
 };
 use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_counted, polynomial::Polynomial};
 
-/// Returns the time of impact, if it has to be known.
+/// Returns the time of impact; it is not computed if it is not needed.
 ///
 /// # Errors
 /// [`StepError::RootSearch`]

@@ -1,8 +1,8 @@
 //! Collision handling: detection per pair type, responses, impact zones (collisions.md).
 //!
-//! One file per pair type holds its detection and its responses; `pass` runs over all pairs, `blocks` over many at a
-//! time; `simple`, `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and
-//! `failsafe`. Nothing is pruned: every pair is checked in every pass, also two fixed particles (collisions.md 1).
+//! One file per pair type holds its detection and its responses; `pass` visits all pairs, `blocks` many at a time;
+//! `simple`, `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and `failsafe`.
+//! Nothing is pruned: every pair is checked in every pass, including two fixed particles (collisions.md 1).
 mod blocks;
 mod continuous_time;
 mod failsafe;
@@ -17,8 +17,8 @@ mod response;
 mod simple;
 mod zones;
 
-/// The coefficients of the detection polynomials (collisions.md 2), once for all: over one number as a pass computes
-/// them, over [lanes](fosssim_num::lanes), and over numbers with bounds. Highest power first, nothing dropped.
+/// The coefficients of the detection polynomials (collisions.md 2), generic over the number type: one number for a
+/// pass, [lanes](fosssim_num::lanes), and numbers with bounds. Highest power first, with nothing dropped.
 pub mod formulas {
     pub use super::{
         particle_edge::{
@@ -50,13 +50,13 @@ pub(super) struct Handler {
     kind: Collision,
     law: Law,
     detector: Detector,
-    /// The search of `simple`, which logs nothing of pairs that are apart.
+    /// The broad phase of `simple`, which omits pairs that are apart.
     nearby: Option<NearbyPairs>,
     hybrid: HybridScratch,
 }
 
 impl Handler {
-    /// Sets the scene's handling up.
+    /// Creates the handler of the scene's collision handling.
     pub fn new(scene: &Scene, search: RootSearch) -> Self {
         let is_simple = matches!(scene.collision, Collision::Simple { .. });
         Self {
@@ -98,14 +98,14 @@ impl Handler {
         }
     }
 
-    /// Sets the most work over all steps.
+    /// Sets the maximum work over all steps.
     pub fn limit_work(&mut self, most: u64) {
         self.detector.limit_work(most);
     }
 
-    /// Computes pairs one by one from now on.
-    pub fn forgo_lanes(&mut self) {
-        self.detector.forgo_lanes();
+    /// Computes later pairs one by one.
+    pub fn disable_lanes(&mut self) {
+        self.detector.disable_lanes();
     }
 
     /// Counts of root searches so far.

@@ -1,4 +1,4 @@
-//! One pair on its own: how it moves within a step, and what detection computes from that, bit for bit as a pass does.
+//! One separate pair: its motion within a step, and the results of detection, identical to those of a pass.
 use super::{
     particle_edge::{self, EdgeMotions},
     particle_half_plane, particle_particle,
@@ -16,7 +16,7 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// The motion of a point within a step: on a straight line, at constant speed.
+/// The motion of a point within a step, on a straight line at constant speed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointMotion {
     /// The point's position at the start of the step.
@@ -40,7 +40,7 @@ impl PointMotion {
     }
 }
 
-/// The objects of a pair and how they move within a step.
+/// The objects of a pair and their motion within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PairMotion {
     /// Two discs.
@@ -52,16 +52,16 @@ pub enum PairMotion {
     },
     /// A disc and an edge.
     Edge {
-        /// The disc's center.
+        /// The motion of the disc's center.
         center: PointMotion,
-        /// The edge's endpoints.
+        /// The motions of the edge's endpoints.
         ends: [PointMotion; 2],
         /// The radii of the disc and of the edge.
         radii: [f64; 2],
     },
     /// A disc and a half-plane.
     HalfPlane {
-        /// The disc's center.
+        /// The motion of the disc's center.
         center: PointMotion,
         /// The disc's radius.
         radius: f64,
@@ -76,7 +76,7 @@ impl PairMotion {
     /// Returns the motion of a scene's pair between two arrays of positions in trace order.
     ///
     /// # Panics
-    /// When the scene or an array has no such object.
+    /// If the scene or an array lacks one of the objects.
     #[must_use]
     pub fn between(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
@@ -109,7 +109,7 @@ impl PairMotion {
         }
     }
 
-    /// Returns the motion of a pair whose particles move by these displacements.
+    /// Returns the motion of a pair whose particles move by `displacements`.
     #[inline]
     pub(super) fn from_bodies(bodies: &Bodies, pair: Pair, q_start: &[f64], displacements: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
@@ -131,15 +131,15 @@ impl PairMotion {
         }
     }
 
-    /// Returns the detection polynomials in the order of the trace, nothing dropped (collisions.md 2).
+    /// Returns the detection polynomials in the order of the trace, with nothing dropped (collisions.md 2).
     #[must_use]
     pub fn polynomials(&self) -> Vec<Polynomial> {
         self.list()[..self.kind().polynomials()].to_vec()
     }
 
-    /// Returns the polynomials, and after them empty ones.
+    /// Returns the polynomials, followed by empty ones.
     #[inline]
-    pub(super) fn list(&self) -> [Polynomial; PairKind::MOST_POLYNOMIALS] {
+    pub(super) fn list(&self) -> [Polynomial; PairKind::MAX_POLYNOMIALS] {
         let two = |(overlap, approach): ([f64; 3], [f64; 2])| {
             let none = Polynomial::default();
             [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach), none, none]
@@ -167,8 +167,8 @@ impl PairMotion {
         }
     }
 
-    /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` if it is zero
-    /// between a particle and an edge, which is no hit.
+    /// Returns the contact normal at `time`, from the first object to the second, not normalized. `None` (no hit) if it
+    /// is zero between a particle and an edge.
     #[must_use]
     pub fn normal(&self, time: f64) -> Option<Vec2> {
         match *self {
@@ -206,7 +206,7 @@ mod tests {
         <halfplane px="0.2" py="-1.1" nx="0.3" ny="1.7"/>
     </scene>"#;
 
-    /// Compares the results of a pass for each pair with those for the pair on its own.
+    /// Compares the results of a pass for each pair with those of the separate pair.
     struct Compare<'a> {
         scene: &'a Scene,
         calls: usize,

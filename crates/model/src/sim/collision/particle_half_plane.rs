@@ -1,6 +1,6 @@
 //! A particle and a half-plane: detection and responses (collisions.md 2, 3, 6).
 //!
-//! The half-plane is two-sided: only the distance to its boundary counts. A fixed particle is moved too.
+//! The half-plane is two-sided: only the distance to its boundary counts. A fixed particle is moved as well.
 use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
@@ -10,8 +10,7 @@ use fosssim_num::{
 use std::ops::Mul;
 
 /// Returns the coefficients of the two polynomials of a disc that starts at `x` and moves by `d` in the step: "closer
-/// than `radius`" and "approaching". Highest power first, of one pair or of several. `squared` is `dot(normal,
-/// normal)`.
+/// than `radius`" and "approaching". Highest power first, for one pair or several. `squared` is `dot(normal, normal)`.
 #[inline(always)]
 pub fn coefficients<N: Number>(
     x: Plane<N>,
@@ -29,7 +28,7 @@ where
     ([-s * s, 2.0 * w * s, -w * w + (radius * radius) * squared], [-s * s, w * s])
 }
 
-/// Returns the contact normal at time `t`: from the center to its foot on the boundary.
+/// Returns the contact normal at time `t`, from the center to its foot on the boundary.
 #[inline]
 pub(super) fn normal(x: Vec2, d: Vec2, point: Vec2, normal: Vec2, squared: f64, t: f64) -> Vec2 {
     (((point - x) - t * d).dot(&normal) / squared) * normal
@@ -48,7 +47,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, n: Vec2) -> Response {
     Response { gain: None, loss: [Some(change), None] }
 }
 
-/// Returns the simple detection: the vector to the boundary when the disc overlaps it and approaches.
+/// Returns the simple detection: the vector to the boundary, if the disc overlaps it and approaches it.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, half_plane: usize) -> Option<Vec2> {
     let q = unit(bodies.normals[half_plane]);
@@ -71,7 +70,7 @@ mod tests {
         samples::{fix, half_plane, particle, scene},
     };
 
-    /// The numbers of trace-format.md 3.
+    /// The example of trace-format.md 3.
     #[test]
     fn the_annotated_example() {
         let (x, d) = (Vec2::new(0.0, 0.5), Vec2::new(0.0, -0.5));

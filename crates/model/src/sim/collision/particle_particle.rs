@@ -8,8 +8,8 @@ use fosssim_num::{
 use std::ops::Mul;
 
 /// Returns the coefficients of the two polynomials of discs that start at `x1` and `x2` and move by `d1` and `d2` in
-/// the step: "closer than `radii`" and "approaching". Highest power first, of one pair or of several. Time is a
-/// fraction of the step.
+/// the step: "closer than `radii`" and "approaching". Highest power first, for one pair or several. Time is a fraction
+/// of the step.
 #[inline(always)]
 pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, x2: Plane<N>, d2: Plane<N>, radii: N) -> ([N; 3], [N; 2])
 where
@@ -18,7 +18,7 @@ where
     let d = d2 - d1;
     let x = x2 - x1;
     let e = d1 - d2;
-    // `e` is `-d`, so `dot(e, e)` is `dot(d, d)` bit for bit; of `dot(e, x)` a zero's sign may differ.
+    // `e` is `-d`, so `dot(e, e)` is identical to `dot(d, d)`; the sign of a zero `dot(e, x)` may differ.
     let squared = d.dot(d);
     ([-squared, -2.0 * x.dot(d), radii * radii - x.dot(x)], [-squared, e.dot(x)])
 }
@@ -37,7 +37,7 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Re
     exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
 }
 
-/// Returns the simple detection: the vector between the centers when they overlap and approach.
+/// Returns the simple detection: the vector between the centers, if the discs overlap and approach.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize) -> Option<Vec2> {
     let n = at(x, j) - at(x, i);

@@ -1,8 +1,8 @@
 //! One detection pass of continuous-time detection over all pairs (collisions.md 1, 2).
 //!
 //! The pass computes the polynomials of every pair, passes them to the observer, and searches their roots if no
-//! certificate excludes an impact within the step. If the observer wants no single calls, [`super::blocks`] does the
-//! same with several pairs at a time.
+//! certificate excludes an impact within the step. If the observer does not need single calls, [`super::blocks`]
+//! processes several pairs at a time.
 use super::{
     super::{
         bodies::Bodies,
@@ -26,18 +26,18 @@ crate::drops_leading!();
 /// The reaction of a pass to a hit, before it checks the next pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reaction {
-    /// The end positions are as before.
+    /// The end positions have not changed.
     Kept,
-    /// The pair's particles were moved.
+    /// The pair's particles have moved.
     Moved,
 }
 
-/// Runs detection passes; owns the values that a pass shares between pairs.
+/// Runs detection passes; holds the values that a pass shares between pairs.
 #[derive(Debug, Clone)]
 pub(super) struct Detector {
     search: RootSearch,
     counts: SearchCounts,
-    /// A pass that takes the counts' work beyond this is the last.
+    /// The maximum work. A pass that exceeds it is the last.
     most_work: u64,
     step: u32,
     passes: u32,
@@ -48,7 +48,7 @@ pub(super) struct Detector {
 }
 
 impl Detector {
-    /// Creates a detector that has done nothing yet, for a scene with this many steps.
+    /// Creates a detector for a scene with `steps` steps.
     pub fn new(search: RootSearch, steps: u32) -> Self {
         Self {
             search,
@@ -57,29 +57,29 @@ impl Detector {
             step: 0,
             passes: 0,
             displacements: Vec::new(),
-            // To search always, or to audit, serves to check other results.
+            // Other root search modes serve to check the results of lanes.
             has_lanes: search == RootSearch::WhereNeeded,
             blocks: Blocks::new(steps),
         }
     }
 
-    /// Checks pairs one by one from now on.
-    pub fn forgo_lanes(&mut self) {
+    /// Checks later pairs one by one.
+    pub fn disable_lanes(&mut self) {
         self.has_lanes = false;
     }
 
-    /// Starts counting passes anew.
+    /// Resets the number of passes.
     pub fn begin_step(&mut self, step: u32) {
         self.step = step;
         self.passes = 0;
     }
 
-    /// Returns the number of passes in this step so far, hence the index of the next one.
+    /// Returns the number of passes in this step so far, which is the index of the next pass.
     pub fn passes(&self) -> u32 {
         self.passes
     }
 
-    /// Bounds the work of all steps together.
+    /// Limits the work of all steps together.
     pub fn limit_work(&mut self, most: u64) {
         self.most_work = most;
     }
@@ -89,12 +89,12 @@ impl Detector {
         self.counts
     }
 
-    /// Checks every pair on the way from `q_start` to `q_end`. On a hit `react` is called, with the end positions,
-    /// before the next pair is checked.
+    /// Checks every pair between `q_start` and `q_end`. After a hit, calls `react` with the end positions before the
+    /// next pair is checked.
     ///
     /// # Errors
-    /// [`StepError::RootSearch`] for a pair whose search would never end, [`StepError::Work`] beyond the work that is
-    /// allowed.
+    /// [`StepError::RootSearch`] for a pair whose search would never end, [`StepError::Work`] if the allowed work is
+    /// exceeded.
     pub fn run<O: Observer>(
         &mut self,
         bodies: &Bodies,
@@ -168,7 +168,7 @@ impl Detector {
         Ok(hits)
     }
 
-    /// Computes a pair's polynomials, decides about it, calls the observer and, on a hit, the response.
+    /// Computes a pair's polynomials, decides the pair, and calls the observer and, on a hit, the response.
     #[inline]
     fn detect<O: Observer, R>(&mut self, pair: Pair, context: &mut PassContext<'_, O, R>) -> Result<(), StepError>
     where
@@ -211,7 +211,7 @@ impl Detector {
         Ok(())
     }
 
-    /// Takes over where a pair's particles end now. Gives these, some of them more than once.
+    /// Copies the current end positions of a pair's particles. Returns the particles, possibly with repetitions.
     fn displace(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) -> [usize; 3] {
         let moved = bodies.particles_of(pair);
         for particle in moved {
@@ -221,7 +221,7 @@ impl Detector {
     }
 }
 
-/// The subject of a pass: the scene, where the step starts and ends, the observer, and the answer to hits.
+/// The context of a pass: the scene, the start and end of the step, the observer, and the response to hits.
 struct PassContext<'a, O, R> {
     pass: Pass,
     bodies: &'a Bodies,

@@ -7,9 +7,9 @@ use fosssim_num::vector::{Vec2, at, put};
 pub(super) struct Law {
     /// The time step `dt`.
     pub time_step: f64,
-    /// `1/dt`, by which displacements become mean velocities.
+    /// The factor `1/dt` that turns displacements into mean velocities.
     pub rate: f64,
-    /// `f = (1 + COR)/2`: 1 keeps the energy, 1/2 loses all of the approach.
+    /// The factor `f = (1 + COR)/2`: 1 conserves the energy, 1/2 loses all of the approach.
     pub factor: f64,
 }
 
@@ -20,7 +20,7 @@ impl Law {
     }
 
     /// Returns the mean velocity of a particle over the step, `(1/dt) (q_end - q_start)`. Responses of continuous-time
-    /// detection use this and not the velocity of the state.
+    /// detection use it instead of the state's velocity.
     #[inline]
     pub fn mean_velocity(&self, q_start: &[f64], q_end: &[f64], particle: usize) -> Vec2 {
         self.rate * (at(q_end, particle) - at(q_start, particle))
@@ -30,46 +30,47 @@ impl Law {
 /// The input of a response.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Setting<'a> {
-    /// The scene's constants.
+    /// The constants of the scene.
     pub bodies: &'a Bodies,
     /// The law of impact.
     pub law: &'a Law,
-    /// Positions at the start of the step.
+    /// The positions at the start of the step.
     pub q_start: &'a [f64],
-    /// Positions at the end of the step, before this response (hybrid: before all responses of the round).
+    /// The positions at the end of the step, before this response (hybrid: before all responses of the round).
     pub q_end: &'a [f64],
 }
 
 /// The change of one particle's velocity and end position.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Change {
-    /// The particle.
+    /// The index of the particle.
     pub particle: usize,
     /// The change of the velocity.
     pub velocity: Vec2,
-    /// The change of the position at the end of the step; `simple` leaves it out.
+    /// The change of the position at the end of the step; `simple` ignores it.
     pub position: Vec2,
 }
 
-/// A response: the gain of the first object and the loss of the others. `None` if a particle is fixed or missing.
+/// A response: the gain of the first object and the loss of the others. An entry is `None` if its particle is fixed or
+/// missing.
 ///
-/// The two are kept apart because the original adds one and subtracts the other, which shows in the sign of a NaN.
+/// Gain and loss are separate because the original adds one and subtracts the other, which affects the sign of a NaN.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Response {
-    /// Added to the first particle.
+    /// The change that is added to the first particle.
     pub gain: Option<Change>,
-    /// Subtracted, in this order.
+    /// The changes that are subtracted, in this order.
     pub loss: [Option<Change>; 2],
 }
 
 impl Response {
-    /// Changes velocities and end positions.
+    /// Applies the response to velocities and end positions.
     pub fn apply(&self, q: &mut [f64], v: &mut [f64]) {
         self.change(q, |change| change.position);
         self.apply_velocities(v);
     }
 
-    /// Changes velocities only (`simple`).
+    /// Applies the response to velocities only (`simple`).
     pub fn apply_velocities(&self, v: &mut [f64]) {
         self.change(v, |change| change.velocity);
     }
@@ -84,7 +85,7 @@ impl Response {
     }
 }
 
-/// Returns `alpha` clamped to [0, 1] by the original's comparisons: NaN becomes 0, and so does -0.
+/// Returns `alpha` clamped to [0, 1] by the original's comparisons: NaN and -0 become 0.
 #[inline]
 pub(super) fn clamp(alpha: f64) -> f64 {
     let alpha = if 0.0 < alpha { alpha } else { 0.0 };

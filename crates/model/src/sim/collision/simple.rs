@@ -1,7 +1,7 @@
 //! `simple` handling: impulses for bodies that overlap at the end of the step and approach (collisions.md 6).
 //!
-//! Velocities change immediately, so that later pairs see them; positions never change. If pairs that are apart are not
-//! wanted, only those are checked that the broad phase finds.
+//! Velocities change immediately, so later pairs use the new ones; positions never change. If pairs that are apart are
+//! not needed, only the pairs found by the broad phase are checked.
 use super::{
     super::{
         bodies::Bodies,
@@ -49,7 +49,7 @@ pub(super) fn handle<O: Observer>(
     observer.end_pass(pass, hits);
 }
 
-/// A pass at work.
+/// A running pass.
 struct RunningPass<'a, O> {
     pass: Pass,
     bodies: &'a Bodies,
@@ -84,7 +84,7 @@ impl<O: Observer> RunningPass<'_, O> {
         });
     }
 
-    /// Decides about a pair, and answers if it collides.
+    /// Decides a pair, and responds if it collides.
     fn settle(
         &mut self,
         kind: PairKind,
@@ -117,11 +117,11 @@ mod tests {
         },
     };
 
-    /// Requests every pair.
+    /// An observer that requests every pair.
     struct Everything;
     impl Observer for Everything {}
 
-    /// Leaving out pairs that are apart changes no bit.
+    /// Omitting pairs that are apart changes no bit.
     #[test]
     fn who_asks_about_no_pair_gets_the_same_velocities() {
         let mut numbers = Numbers(3);

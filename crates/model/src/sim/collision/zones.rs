@@ -1,21 +1,21 @@
-//! Impact zones: connected collisions (collisions.md 5).
+//! Impact zones, which are groups of connected collisions (collisions.md 5).
 //!
-//! The original merges lists of sets until no two share a particle, each set joining the first that it meets. The
-//! result is the connected components, in the order of the first list entry of each; here a union-find computes it in
-//! nearly linear time.
+//! The original merges lists of sets until no two sets share a particle; each set joins the first set that it meets.
+//! The result is the connected components, in the order of the first list entry of each. A union-find structure
+//! computes them in nearly linear time.
 use super::super::{
     bodies::Bodies,
     observer::{Impulse, Zone},
     pair::PairKind,
 };
 
-/// Disjoint zones in order; their particles ascending, in one array.
+/// Disjoint zones in order, with their ascending particles in one array.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Zones {
     particles: Vec<u32>,
     ends: Vec<usize>,
     half_planes: Vec<bool>,
-    /// For each particle of the scene its zone, or [`NONE`].
+    /// The zone of each particle of the scene, or [`NONE`].
     zone_of: Vec<u32>,
 }
 
@@ -38,18 +38,18 @@ impl Zones {
         (0..self.len()).map(|index| self.get(index))
     }
 
-    /// Passes the list of all zones to `hear`; `memory` lends the list its memory.
+    /// Calls `hear` with the list of all zones; the list is built in `memory`.
     pub fn show(&self, memory: &mut Vec<Zone<'static>>, hear: impl FnOnce(&[Zone<'_>])) {
         let mut list: Vec<Zone<'_>> = std::mem::take(memory);
         list.extend(self.iter());
         hear(&list);
         list.clear();
-        // The list is empty by now; collecting in place returns the allocation under the longer lifetime.
+        // The list is empty now; collecting in place returns the allocation with the longer lifetime.
         *memory = list.into_iter().map(|_| Zone { particles: &[], half_plane: false }).collect();
     }
 }
 
-/// Equal zones, in whatever order: as many, and each of the one list occurs in the other.
+/// Zones are equal in any order, if each zone of one list occurs in the other.
 impl PartialEq for Zones {
     fn eq(&self, other: &Self) -> bool {
         self.len() == other.len()
@@ -60,12 +60,12 @@ impl PartialEq for Zones {
     }
 }
 
-/// Joins zones and hits into components; memory O(particles + hits).
+/// Joins zones and hits into connected components; memory O(particles + hits).
 #[derive(Debug, Clone, Default)]
 pub(super) struct Builder {
-    /// Union-find over the scene's particles.
+    /// The union-find structure of the scene's particles.
     parents: Vec<u32>,
-    /// One particle and the flag of each set so far, in order.
+    /// One particle and the half-plane flag of each set so far, in order.
     sets: Vec<(u32, bool)>,
 }
 
@@ -88,7 +88,7 @@ impl Builder {
         }
     }
 
-    /// Appends one zone per hit: the particles of the pair, and the flag for a half-plane.
+    /// Appends one zone per hit: the particles of the pair, and the half-plane flag.
     pub fn add_hits(&mut self, bodies: &Bodies, hits: &[Impulse]) {
         for Impulse { pair, .. } in hits {
             for particle in bodies.particles_of(*pair) {
@@ -108,7 +108,7 @@ impl Builder {
         half_planes.clear();
         zone_of.clear();
         zone_of.resize(particles, NONE);
-        // First the roots get their numbers, in the order of the sets.
+        // Roots get their numbers in the order of the sets.
         for index in 0..self.sets.len() {
             let (particle, half_plane) = self.sets[index];
             let root = self.root(particle) as usize;
@@ -122,7 +122,7 @@ impl Builder {
                 half_planes[zone_of[root] as usize] |= half_plane;
             }
         }
-        // Then all members get their root's number and are counted; a particle of no set is its own unnumbered root.
+        // Each member gets its root's number and is counted; a particle without a set is its own unnumbered root.
         for particle in 0..particles {
             #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
             let root = self.root(particle as u32) as usize;
@@ -131,7 +131,7 @@ impl Builder {
                 ends[zone_of[particle] as usize] += 1;
             }
         }
-        // A counting sort leaves the particles of each zone ascending and `ends` at the ends.
+        // A counting sort leaves the particles of each zone ascending, and `ends` at the ends.
         let mut start = 0;
         for end in ends.iter_mut() {
             let count = *end;
@@ -157,7 +157,7 @@ impl Builder {
 
     fn root(&mut self, mut particle: u32) -> u32 {
         while self.parents[particle as usize] != particle {
-            // Halving the path on the way keeps later searches short.
+            // Halving the path keeps later searches short.
             let above = self.parents[self.parents[particle as usize] as usize];
             self.parents[particle as usize] = above;
             particle = above;
@@ -194,7 +194,7 @@ mod tests {
         zones
     }
 
-    /// Returns the merge of collisions.md 5, as written.
+    /// Returns the merge of collisions.md 5, implemented literally.
     fn merged_literally(mut zones: Vec<(Vec<u32>, bool)>) -> Vec<(Vec<u32>, bool)> {
         loop {
             let mut new: Vec<(Vec<u32>, bool)> = Vec::new();

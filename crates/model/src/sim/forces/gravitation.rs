@@ -4,7 +4,7 @@ use crate::sim::matrix::couple;
 use fosssim_num::vector::{at, length, over};
 use nalgebra::{DMatrix, Matrix2};
 
-/// Adds `G m m' / r^2` along the line from the first to the second (NaN when they coincide).
+/// Adds `G m m' / r^2` along the line from the first to the second particle (NaN if they coincide).
 pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
     let d = at(x, b) - at(x, a);
     let r = length(d);

@@ -1,8 +1,8 @@
 //! The forces: gradients of their potentials, and the Hessians that the implicit integrators need.
 //!
-//! One file per kind; this one holds the order in which they act and the dispatch over the closed set. All gradients
-//! are accumulated into one array that starts at +0; the penalty force comes last (simulation.md 2, 3). Forces do not
-//! know fixed particles: the integrators set their entries to zero.
+//! One file per kind; this file holds the acting order and the dispatch over all kinds. All gradients are accumulated
+//! into one array that starts at +0; the penalty force comes last (simulation.md 2, 3). Forces ignore whether particles
+//! are fixed; the integrators set the entries of fixed particles to zero.
 mod constant;
 mod drag;
 mod gravitation;
@@ -26,8 +26,8 @@ pub(super) struct Forces {
 }
 
 impl Forces {
-    /// Takes the scene's forces, and the penalty force of `penalty` and `hybrid` handling (even when its stiffness or
-    /// thickness is 0).
+    /// Creates the scene's forces, including the penalty force of `penalty` and `hybrid` handling (even if its
+    /// stiffness or thickness is 0).
     pub fn new(scene: &Scene) -> Self {
         let penalty = match scene.collision {
             Collision::Penalty { stiffness, thickness, detection } => {
@@ -75,7 +75,7 @@ impl Forces {
         }
     }
 
-    /// Adds all d2U/dx2 to `matrix`. The penalty force counts as having none (simulation.md 3).
+    /// Adds all d2U/dx2 to `matrix`. The penalty force's Hessian counts as zero (simulation.md 3).
     pub fn add_position_hessians(&self, bodies: &Bodies, x: &[f64], v: &[f64], matrix: &mut DMatrix<f64>) {
         for force in &self.list {
             match *force {
@@ -107,8 +107,8 @@ impl Forces {
     }
 }
 
-/// Returns the gradient (2N) of each force of a scene at positions `x` and velocities `v`, in acting order; that of the
-/// penalty force, if there is one, comes last.
+/// Returns the gradient (2N) of each force of a scene at positions `x` and velocities `v`, in acting order. The penalty
+/// force, if there is one, comes last.
 #[must_use]
 pub fn gradients(scene: &Scene, x: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
     let (bodies, Forces { list, penalty }) = (Bodies::new(scene), Forces::new(scene));

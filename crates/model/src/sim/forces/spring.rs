@@ -4,14 +4,14 @@ use crate::sim::matrix::{couple, decouple};
 use fosssim_num::vector::{Vec2, at, length, over};
 use nalgebra::{DMatrix, Matrix2};
 
-/// Returns the spring's length and its direction from the first to the second endpoint (NaN when they coincide).
+/// Returns the spring's length and its direction from the first to the second endpoint (NaN if they coincide).
 fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
     let d = at(x, b) - at(x, a);
     let l = length(d);
     (l, over(d, l))
 }
 
-/// Adds `k (l - l0) n` and the damping `b (n . w) n` on the endpoints, both always.
+/// Adds `k (l - l0) n` and the damping `b (n . w) n` on the endpoints; both are always added.
 pub(super) fn add_gradient(
     [a, b]: [usize; 2],
     stiffness: f64,
@@ -30,7 +30,7 @@ pub(super) fn add_gradient(
     add(gradient, b, damped);
 }
 
-/// Adds the position Hessian of the elastic part, then the damping's.
+/// Adds the position Hessian of the elastic part, then that of the damping.
 pub(super) fn add_position_hessian(
     [a, b]: [usize; 2],
     stiffness: f64,
@@ -77,7 +77,7 @@ mod tests {
         let v = [0.0; 4];
         let mut gradient = [0.0; 4];
         add_gradient([0, 1], 2.0, 4.0, 0.0, &x, &v, &mut gradient);
-        // Length 5, stretch 1, so the force on the first end points to the second: the gradient is its opposite.
+        // Length 5 and stretch 1, so the force on the first end points to the second, and the gradient is the opposite.
         assert!((gradient[0] + 1.2).abs() < 1e-15 && (gradient[1] + 1.6).abs() < 1e-15);
         assert!((gradient[2] - 1.2).abs() < 1e-15 && (gradient[3] - 1.6).abs() < 1e-15);
     }

@@ -1,6 +1,6 @@
-//! Two particles that drive each other around (simulation.md 3, vortexforce).
+//! Two particles that make each other rotate (simulation.md 3, vortexforce).
 //!
-//! Its Hessians are not defined; `Simulation::step` rejects it with an implicit integrator (scene-format.md 6).
+//! The force has no Hessians; `Simulation::step` rejects it with an implicit integrator (scene-format.md 6).
 use super::{add, subtract};
 use fosssim_num::vector::{Vec2, at, length, over};
 

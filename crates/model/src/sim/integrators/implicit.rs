@@ -1,6 +1,6 @@
-//! implicit-euler by Newton's method (simulation.md 4).
+//! The integrator implicit-euler, by Newton's method (simulation.md 4).
 //!
-//! The original iterates without limit and hangs when Newton's method does not converge; here the step ends with
+//! The original iterates without limit and hangs if Newton's method does not converge; this step returns
 //! [`StepError::Newton`] instead.
 use super::{Effort, ImplicitScratch, system::System};
 use crate::sim::{state::State, step_error::StepError};
@@ -11,7 +11,7 @@ use fosssim_num::{
 
 /// Iterates until the update of the velocities is small (or NaN), then advances the state by `dx`, `dv`.
 ///
-/// An iteration depends on `dv` alone, so a `dv` that recurs exactly proves an endless cycle: one is remembered at each
+/// An iteration depends only on `dv`, so a `dv` that recurs exactly proves an endless cycle. One `dv` is stored at each
 /// power of two of the count (Brent's method).
 pub(super) fn advance(
     step: u32,
@@ -27,7 +27,7 @@ pub(super) fn advance(
         *dx = h * velocity;
     }
     scratch.dv.fill(0.0);
-    // Opaque, because a compiler may turn the product into a sign flip of the product with `h` (see `Stepper::new`).
+    // Opaque, because a compiler could turn the product into a sign flip of the product with `h` (see `Stepper::new`).
     let minus_h = std::hint::black_box(-h);
     let mut update = f64::INFINITY;
     let mut iteration = 0_u32;
@@ -70,7 +70,7 @@ pub(super) fn advance(
     Ok(())
 }
 
-/// Returns the Euclidean norm, with the squares of even and of odd entries summed apart.
+/// Returns the Euclidean norm, with the squares of even and odd entries summed separately.
 fn norm_by_halves(d: &[f64]) -> f64 {
     let mut pairs = d.chunks_exact(2);
     let Some(first) = pairs.next() else { return 0.0 };
@@ -123,7 +123,7 @@ mod tests {
         }
     }
 
-    /// The penalty force has no Hessian: inside the layer the iterates jump in and out forever.
+    /// The penalty force has no Hessian, so the iterates enter and leave the layer forever.
     #[test]
     fn an_endless_iteration_is_an_error() {
         let mut scene =

@@ -1,4 +1,4 @@
-//! linearized-implicit-euler (simulation.md 4): one linear solve per step.
+//! The integrator linearized-implicit-euler (simulation.md 4), with one linear solve per step.
 use super::{ImplicitScratch, add_scaled, system::System};
 use crate::sim::state::State;
 
@@ -16,7 +16,7 @@ pub(super) fn advance(
         *x = state.positions[k] + h * state.velocities[k];
     }
     for (v, velocity) in v.iter_mut().zip(&state.velocities) {
-        // Adding zero turns a -0 into +0, as the original does.
+        // Adding zero turns -0 into +0, as in the original.
         *v = velocity + 0.0;
     }
     system.forces.fill_gradient(bodies, x, v, rhs);

@@ -1,10 +1,10 @@
-//! The time integrators (simulation.md 4): the implicit ones in a file each, and the dense system that they solve.
+//! The time integrators (simulation.md 4): one file per implicit integrator, and the dense system that they solve.
 //!
 //! Explicit Euler moves the positions with the old velocities, `x += h v`, then `v += h F / m`. Forward-backward Euler,
-//! also called symplectic, moves them with the new ones, `v += h F / m`, then `x += h v`.
+//! also called symplectic, moves the positions with the new velocities, `v += h F / m`, then `x += h v`.
 //!
-//! An integrator turns positions and velocities at the start of a step into those at its end. Fixed particles feel no
-//! force, but their own velocity moves them.
+//! An integrator turns positions and velocities at the start of a step into those at its end. No force acts on fixed
+//! particles, but their own velocity moves them.
 mod implicit;
 mod linearized;
 mod system;
@@ -20,7 +20,7 @@ use system::System;
 pub(super) struct Stepper {
     kind: Integrator,
     time_step: f64,
-    /// Minus one, opaque to the compiler: see [`Stepper::new`].
+    /// The number -1, opaque to the compiler; see [`Stepper::new`].
     minus_one: f64,
     gradient: Vec<f64>,
     implicit: Option<Box<ImplicitScratch>>,
@@ -28,7 +28,7 @@ pub(super) struct Stepper {
 }
 
 /// The work of Newton's method over all steps, in the unit of
-/// [`SearchCounts::work`](super::search::SearchCounts::work). Methods that do the same in every step count nothing.
+/// [`SearchCounts::work`](super::search::SearchCounts::work). Methods with constant work per step are not counted.
 #[derive(Debug, Clone, Copy)]
 struct Effort {
     done: u64,
@@ -37,16 +37,16 @@ struct Effort {
 }
 
 impl Effort {
-    /// Counts an iteration. Whether more is allowed.
+    /// Counts an iteration. Returns whether more are allowed.
     fn iterate(&mut self) -> bool {
         self.done += self.each;
         self.done <= self.most
     }
 }
 
-/// Returns the least work of a step of the scene's method, in the unit of
+/// Returns the minimum work of a step of the scene's integrator, in the unit of
 /// [`SearchCounts::work`](super::search::SearchCounts::work): an iteration of Newton's method, if that is used.
-/// Elimination takes n^3 / 3 operations, of which a detection call does some hundred.
+/// Elimination takes n³ / 3 operations; a detection call takes a few hundred.
 #[must_use]
 pub fn least_work(scene: &Scene) -> u64 {
     if scene.integrator == Integrator::ImplicitEuler { 1 + (2 * scene.particles.len() as u64).pow(3) / 64 } else { 0 }
@@ -65,7 +65,7 @@ struct ImplicitScratch {
 }
 
 impl Stepper {
-    /// Sets the scene's integrator up.
+    /// Creates the scene's integrator.
     pub fn new(scene: &Scene) -> Self {
         let entries = 2 * scene.particles.len();
         let scratch = || ImplicitScratch {
@@ -81,8 +81,8 @@ impl Stepper {
         Self {
             kind: scene.integrator,
             time_step: scene.time_step,
-            // The factor of `F = -1 * g` is a multiplication. A compiler that knows it makes it a sign flip, which
-            // differs for NaN: the original's sign of a NaN residual would be lost.
+            // The factor of `F = -1 * g` is a multiplication. A compiler that knew the factor would make it a sign
+            // flip, which differs for NaN, and the original's sign of a NaN residual would be lost.
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,
@@ -95,7 +95,7 @@ impl Stepper {
         self.effort.done
     }
 
-    /// Sets the most work over all steps.
+    /// Sets the maximum work over all steps.
     pub fn limit_work(&mut self, most: u64) {
         self.effort.most = most;
     }
@@ -105,11 +105,11 @@ impl Stepper {
         self.implicit.is_some()
     }
 
-    /// Advances `state` by one time step, this one. `steer` gets the systems that are solved.
+    /// Advances `state` by one time step, number `step`. `steer` receives the systems that are solved.
     ///
     /// # Errors
-    /// [`StepError::Newton`], or [`StepError::Work`] beyond the work that is allowed, from implicit-euler; the state is
-    /// unchanged then.
+    /// [`StepError::Newton`], or [`StepError::Work`] if the allowed work is exceeded, from implicit-euler; the state is
+    /// then unchanged.
     pub fn advance<'a>(
         &mut self,
         step: u32,

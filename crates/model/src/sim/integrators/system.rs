@@ -4,15 +4,15 @@ use crate::sim::{bodies::Bodies, forces::Forces, observer::Steer};
 use fosssim_num::linear;
 use nalgebra::DMatrix;
 
-/// A scene's bodies and forces as an implicit method sees them.
+/// A scene's bodies and forces for an implicit method.
 pub(super) struct System<'a> {
-    /// The bodies.
+    /// The scene's bodies.
     pub bodies: &'a Bodies,
-    /// The forces.
+    /// The scene's forces.
     pub forces: &'a mut Forces,
     /// The time step.
     pub h: f64,
-    /// Gets the matrices that are solved.
+    /// Receives each matrix before it is solved, and may replace it.
     pub steer: Option<&'a mut dyn Steer>,
 }
 

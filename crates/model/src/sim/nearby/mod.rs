@@ -1,9 +1,9 @@
-//! The broad phase: finds the pairs that may be closer than their radii and a margin, without checking all pairs.
+//! The broad phase finds the pairs that may be closer than their radii and a margin, without checking all pairs.
 //!
 //! Particles are sorted into strips by size ([`strips`]); edges, and particles of larger sizes, search for smaller
-//! particles in the rectangle that they reach. If particles are spread evenly this takes time in proportion to their
-//! number. The result is a superset, by the same roundings that the forces make: leaving out the others never changes a
-//! bit.
+//! particles in the rectangle that they reach. If particles are spread evenly, the time is proportional to their
+//! number. The result is a superset of the near pairs, with the same rounding as in the forces, so omitting the other
+//! pairs never changes a bit.
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -12,22 +12,23 @@ use crate::scene::{Edge, Scene};
 use fosssim_num::vector::{Vec2, at};
 use strips::{PlacedParticle, Rectangle, Strips};
 
-/// Radii of one size are at most this many times smaller than the largest of it.
-const RANGE: f64 = 4.0;
+/// The maximum ratio between the radii of one size class.
+const MAX_RADIUS_RATIO: f64 = 4.0;
 
-/// Pairs that are kept, per object. Where there are more, nearly all pairs count, and going through them needs no list.
-const MOST_PAIRS: usize = 32;
+/// The maximum number of kept pairs per object. With more, nearly all pairs count, and visiting all pairs needs no
+/// list.
+const MAX_PAIRS_PER_OBJECT: usize = 32;
 
-/// Below this number of pairs a check of all of them is cheaper.
-const FEWEST_PAIRS: usize = 1 << 10;
+/// The minimum number of pairs for a search; with fewer, a check of all pairs is cheaper.
+const MIN_PAIRS: usize = 1 << 10;
 
 /// The pairs that may be near each other, with the memory for the next search.
 ///
-/// Radii and edges are the scene's; memory grows with the number of particles and edges.
+/// The copies of radii and edges grow with the number of particles and edges.
 #[derive(Debug, Clone)]
 pub(super) struct NearbyPairs {
     radii: Vec<f64>,
-    /// By falling size.
+    /// The strips, by descending size.
     sizes: Vec<Strips>,
     edges: Vec<Edge>,
     margin: f64,
@@ -37,7 +38,7 @@ pub(super) struct NearbyPairs {
     tested: u64,
 }
 
-/// Two numbers of 32 bits in the order in which lists are sorted, the first one above.
+/// Two 32-bit numbers in one, with the first in the high bits, so that lists sort by the first.
 type Numbers = u64;
 
 const fn numbers(first: u32, second: u32) -> Numbers {
@@ -49,7 +50,8 @@ fn differ_by(numbers: Numbers) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }
 
-/// The pairs that were found, particle by particle; all others are at least as far apart as their radii and the margin.
+/// The pairs that were found, particle by particle. All other pairs are at least as far apart as their radii and the
+/// margin.
 #[derive(Debug)]
 pub(super) struct NearRows<'a> {
     particles: &'a [Numbers],
@@ -57,7 +59,7 @@ pub(super) struct NearRows<'a> {
 }
 
 impl<'a> NearRows<'a> {
-    /// Returns the later particles, and the edges, that are near a particle. Called for particles in their order.
+    /// Returns the later particles, and the edges, near a particle. Must be called for particles in order.
     pub fn next(&mut self, particle: usize) -> [impl Iterator<Item = usize> + use<'a>; 2] {
         [&mut self.particles, &mut self.edges].map(|list| {
             let (own, later) = list.split_at(list.iter().take_while(|&&pair| differ_by(pair)[0] <= particle).count());
@@ -68,16 +70,16 @@ impl<'a> NearRows<'a> {
 }
 
 impl NearbyPairs {
-    /// Creates the search for the particles and edges of a scene, if it is cheaper than checking all of them.
+    /// Creates the search for the particles and edges of a scene, if it is cheaper than a check of all pairs.
     pub fn for_many(scene: &Scene, margin: f64) -> Option<Self> {
         let particles = scene.particles.len();
-        (particles * (particles / 2 + scene.edges.len()) >= FEWEST_PAIRS).then(|| Self::new(scene, margin))
+        (particles * (particles / 2 + scene.edges.len()) >= MIN_PAIRS).then(|| Self::new(scene, margin))
     }
 
     /// Creates the search for the particles and edges of a scene.
     pub fn new(scene: &Scene, margin: f64) -> Self {
         let radii: Vec<f64> = scene.particles.iter().map(|particle| particle.radius).collect();
-        // A particle without a radius reaches nothing.
+        // A particle whose radius is NaN reaches nothing.
         let numbered = (0..).zip(&radii).filter(|(_, radius)| !radius.is_nan());
         let mut by_size: Vec<(u32, f64)> = numbered.map(|(particle, &radius)| (particle, radius)).collect();
         by_size.sort_by(|one, other| other.1.total_cmp(&one.1));
@@ -85,17 +87,18 @@ impl NearbyPairs {
         let mut sizes = Vec::new();
         let mut rest = &by_size[..];
         while let Some(&(_, largest)) = rest.first() {
-            let count = rest.partition_point(|&(_, radius)| !(size(radius) * RANGE < size(largest)));
+            let count = rest.partition_point(|&(_, radius)| !(size(radius) * MAX_RADIUS_RATIO < size(largest)));
             let (own, smaller) = rest.split_at(count.max(1));
             sizes.push(Strips::new(own, margin));
             rest = smaller;
         }
-        let most = MOST_PAIRS * (scene.particles.len() + scene.edges.len());
+        let most = MAX_PAIRS_PER_OBJECT * (scene.particles.len() + scene.edges.len());
         let (particles, edge_pairs) = (Vec::new(), Vec::new());
         Self { radii, sizes, edges: scene.edges.clone(), margin, most, particles, edge_pairs, tested: 0 }
     }
 
-    /// Finds the pairs at positions `x` (2N). `None` if there are too many to be kept: then the caller checks all.
+    /// Finds the pairs at positions `x` (2N). Returns `None` if there are too many to keep; the caller then checks all
+    /// pairs.
     pub fn find(&mut self, x: &[f64]) -> Option<NearRows<'_>> {
         let Self { radii, sizes, edges, margin, most, particles, edge_pairs, tested } = self;
         particles.clear();
@@ -136,14 +139,14 @@ impl NearbyPairs {
         Some(NearRows { particles, edges: edge_pairs })
     }
 
-    /// Returns the number of tested pairs so far: the work of all searches.
+    /// Returns the number of tested pairs so far, which is the work of all searches.
     #[cfg(test)]
     pub fn tested(&self) -> u64 {
         self.tested
     }
 }
 
-/// Returns whether the vector is certainly not shorter than `reach`, without a square root.
+/// Returns whether the vector is certainly not shorter than `reach`, computed without a square root.
 ///
 /// With `s` the rounded `reach * reach`, a rounded squared length above `s` is at least the next number after `s`,
 /// hence above the exact square of `reach`; its root is then at least `reach` after rounding too. A negative `reach`
@@ -153,21 +156,22 @@ pub(super) fn is_beyond(n: Vec2, reach: f64) -> bool {
     n.x * n.x + n.y * n.y > reach * reach
 }
 
-/// Returns the range that leaves no part of a row out.
+/// Returns a range that includes every part of a row.
 fn everywhere(_: [f64; 2]) -> [f64; 2] {
     [f64::NEG_INFINITY, f64::INFINITY]
 }
 
-/// Returns a little more than a distance at these places, for all roundings on the way to a vector between them.
+/// Returns slightly more than `reach`, to cover all rounding on the way to a vector between two points.
 fn widen(reach: f64, places: [Vec2; 2]) -> f64 {
     let most = places.iter().fold(0.0_f64, |most, place| most.max(place.x.abs()).max(place.y.abs()));
-    reach * (1.0 + 1e-9) + most * 1e-12 + LEAST_REACH
+    reach * (1.0 + 1e-9) + most * 1e-12 + MIN_REACH
 }
 
-/// The squares of smaller lengths may be zero when rounded.
-const LEAST_REACH: f64 = 1e-150;
+/// The minimum reach whose square does not underflow.
+const MIN_REACH: f64 = 1e-150;
 
-/// Returns all that is not further than `reach` from the line between two places. `None` if nothing is.
+/// Returns the rectangle of all points that are at most `reach` from the line between two points; `None` if it is
+/// empty.
 fn around(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
         return None;
@@ -179,7 +183,7 @@ fn around(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     Some(Rectangle { low, high: Vec2::new(one.x.max(other.x), one.y.max(other.y)) + room })
 }
 
-/// Adds the particles of a size that an edge may reach.
+/// Adds the particles of a size class that an edge may reach.
 fn near_edge(
     size: &Strips,
     radii: &[f64],
@@ -195,7 +199,7 @@ fn near_edge(
     let [x2, x3] = ends;
     let x32 = x3 - x2;
     let (squared, room) = (x32.dot(&x32), widen(reach, ends));
-    // The part of a row that the edge crosses; all of it if that is not known well.
+    // The part of a row that the edge crosses, or the whole row if that is uncertain.
     let narrow = |[low, high]: [f64; 2]| {
         let times = [(low - room - x2.y) / x32.y, (high + room - x2.y) / x32.y].map(|time| time.clamp(0.0, 1.0));
         let [from, to] = times.map(|time| x2.x + time * x32.x);
@@ -209,7 +213,7 @@ fn near_edge(
     size.within(rectangle, narrow, |entry| {
         let (particle, x1) = (entry.particle, entry.place);
         if edge.first != particle as usize && edge.second != particle as usize {
-            // As the forces compute it; NaN is kept.
+            // Computed like the forces do; NaN is kept.
             let alpha = ((x1 - x2).dot(&x32) / squared).clamp(0.0, 1.0);
             if !is_beyond((x2 + alpha * x32) - x1, (radii[particle as usize] + edge.radius) + margin) {
                 found.push(numbers(particle, index as u32));

@@ -1,23 +1,24 @@
-//! Particles of like radii in strips: rows of the plane as high as two of them reach, each row sorted by x.
+//! Particles of similar radii in strips, which are rows of the plane as high as the reach of two particles, each sorted
+//! by x.
 //!
-//! Rows are numbered by a cast, which rounds towards zero: the strip around zero is twice as high, and no row is
-//! further from another than it would be by floors. From one search to the next few particles change places, so that
-//! sorting is an insertion here and there.
-use super::LEAST_REACH;
+//! Rows are numbered by a cast, which rounds toward zero. The strip around zero is therefore twice as high, and row
+//! numbers differ by no more than with floors. Few particles change their order between searches, so sorting takes few
+//! insertions.
+use super::MIN_REACH;
 use fosssim_num::vector::{Vec2, at};
 
-/// By how much strips are higher than two particles reach, so that rounding never puts two that reach each other more
-/// than one row apart.
-const HIGHER: f64 = 1.0 + 1e-6;
+/// The factor by which strips are higher than the reach of two particles, so that rounding never puts two particles in
+/// reach more than one row apart.
+const HEIGHT_FACTOR: f64 = 1.0 + 1e-6;
 
-/// From this row on rounding of a position may be a part of a row that counts.
+/// The row from which the rounding of a position may be a relevant part of a row.
 const ROUNDED_ROW: i64 = 1 << 30;
 
-/// The first row has all that is lower, the last one all that is higher.
+/// The first row, which has all lower particles; the last row has all higher ones.
 const FIRST_ROW: i64 = -LAST_ROW;
 const LAST_ROW: i64 = i64::MAX - 8;
 
-/// A particle as the last search saw it.
+/// A particle at the last search.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacedParticle {
     row: i64,
@@ -25,7 +26,7 @@ pub(super) struct PlacedParticle {
     pub particle: u32,
 }
 
-/// The particles of one row, from `start` to `end` in the list of all.
+/// The particles of one row, from `start` to `end` in the list of all particles.
 #[derive(Debug, Clone, Copy)]
 struct Strip {
     number: i64,
@@ -33,7 +34,7 @@ struct Strip {
     end: usize,
 }
 
-/// Particles of like radii, sorted.
+/// Particles of similar radii, sorted.
 #[derive(Debug, Clone)]
 pub(super) struct Strips {
     entries: Vec<PlacedParticle>,
@@ -41,15 +42,15 @@ pub(super) struct Strips {
     rows: Vec<Strip>,
     /// The largest radius.
     radius: f64,
-    /// The greatest reach of any two particles.
+    /// The maximum reach of any two particles.
     reach: f64,
-    /// The width whose square is still too small to decide anything.
+    /// The width whose square is too small to be compared.
     width: f64,
-    /// Rows per length.
+    /// The number of rows per length.
     density: f64,
 }
 
-/// A rectangle.
+/// An axis-aligned rectangle.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rectangle {
     pub low: Vec2,
@@ -57,8 +58,8 @@ pub(super) struct Rectangle {
 }
 
 impl Strips {
-    /// Strips for these particles and their radii; two reach each other when they are closer than their radii and
-    /// `margin` together.
+    /// Creates strips for particles with their radii. Two particles are in reach if they are closer than the sum of
+    /// their radii and `margin`.
     pub fn new(members: &[(u32, f64)], margin: f64) -> Self {
         let radius = members.iter().map(|member| member.1).fold(f64::NEG_INFINITY, f64::max);
         let reach = (radius + radius) + margin;
@@ -69,8 +70,8 @@ impl Strips {
             rows: Vec::new(),
             radius,
             reach,
-            width: reach.max(LEAST_REACH),
-            density: 1.0 / (reach * HIGHER).max(LEAST_REACH),
+            width: reach.max(MIN_REACH),
+            density: 1.0 / (reach * HEIGHT_FACTOR).max(MIN_REACH),
         }
     }
 
@@ -79,13 +80,13 @@ impl Strips {
         self.radius
     }
 
-    /// Returns all particles that have a place.
+    /// Returns all particles with a finite position.
     pub fn entries(&self) -> &[PlacedParticle] {
         let end = self.rows.last().map_or(0, |row| row.end);
         &self.entries[..end]
     }
 
-    /// Sorts the particles by where they are now. What has no finite position is left out.
+    /// Sorts the particles by their current positions. Particles without a finite position are left out.
     pub fn update(&mut self, x: &[f64]) {
         for entry in &mut self.entries {
             let place = at(x, entry.particle as usize);
@@ -109,7 +110,7 @@ impl Strips {
     /// Calls `hear` for all pairs that may reach each other, each once, until it returns false. Returns the number of
     /// tested pairs.
     pub fn pairs(&self, mut hear: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
-        // No distance is less than zero, and NaN reaches nothing.
+        // No distance is negative, and NaN reaches nothing.
         if !(self.reach > 0.0) {
             return 0;
         }
@@ -152,7 +153,7 @@ impl Strips {
         tested
     }
 
-    /// Returns the lowest and the highest y of a row, and a little more.
+    /// Returns the lowest and the highest y of a row, slightly widened.
     fn heights(&self, row: i64) -> [f64; 2] {
         let height = |row: i64| match row {
             ..=FIRST_ROW => f64::NEG_INFINITY,
@@ -165,7 +166,7 @@ impl Strips {
 
     /// Calls `hear` for all particles in a rectangle, until it returns false. Returns the number of checked particles.
     ///
-    /// `narrow` may cut a row short: it gets the lowest and the highest y of a row, and returns the part of the
+    /// `narrow` may shorten a row: it receives the lowest and the highest y of a row, and returns the part of the
     /// rectangle's width that counts there.
     pub fn within(
         &self,
@@ -193,19 +194,20 @@ impl Strips {
     }
 }
 
-/// Returns the row of a height. It never falls as the height rises.
+/// Returns the row of height `y`. It never decreases as the height increases.
 fn row_of(y: f64, density: f64) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "what is too large is in the last row, which has room")]
     let row = (y * density) as i64;
     row.clamp(FIRST_ROW, LAST_ROW)
 }
 
-/// Sorts entries by row and x: nearly sorted ones with one comparison each, others as any list.
+/// Sorts entries by row and x. Nearly sorted lists take one comparison per entry, others are sorted by the standard
+/// library.
 fn sort(entries: &mut [PlacedParticle]) {
     let is_before = |one: &PlacedParticle, other: &PlacedParticle| {
         one.row < other.row || one.row == other.row && one.place.x < other.place.x
     };
-    // In a large scene a few of a hundred change rows in a step, and pass all entries between.
+    // In a large scene a few percent of the entries change rows in a step, and pass all entries between.
     let mut moves = 8 * entries.len();
     for index in 1..entries.len() {
         if !is_before(&entries[index], &entries[index - 1]) {

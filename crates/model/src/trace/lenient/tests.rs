@@ -57,7 +57,7 @@ fn a_monstrous_polynomial_is_kept_in_part() {
     let monster = vec![1.0; 1_000_000];
     let (frame, _) = read(&record(&[&[1.0], &monster, &[2.0]]));
     assert_eq!((frame.logged, frame.is_cut()), (3, false));
-    assert_eq!(frame.polynomials.get(1).len(), LONGEST_POLYNOMIAL);
+    assert_eq!(frame.polynomials.get(1).len(), MAX_KEPT_COEFFICIENTS);
     assert_eq!(frame.polynomials.get(2), [2.0]);
 }
 

@@ -1,17 +1,17 @@
-//! Times as dyadic fractions: an integer over a power of two.
+//! Times as dyadic fractions, which are integers divided by a power of two.
 use num_bigint::BigInt;
 
-/// `numerator / 2^exponent`, not negative.
+/// The nonnegative number `numerator / 2^exponent`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Dyadic {
-    /// The numerator, not negative.
+    /// The nonnegative numerator.
     pub(super) numerator: BigInt,
     /// The exponent of the denominator.
     pub(super) exponent: u64,
 }
 
 impl Dyadic {
-    /// 0.
+    /// The number 0.
     pub(super) const ZERO: Self = Self { numerator: BigInt::ZERO, exponent: 0 };
 
     /// Returns 1.
@@ -19,23 +19,23 @@ impl Dyadic {
         Self { numerator: BigInt::from(1), exponent: 0 }
     }
 
-    /// Returns the numerator over `2^exponent`, for an exponent that is not smaller than its own.
+    /// Returns the numerator over `2^exponent`, for an exponent that is at least the fraction's own.
     fn numerator_over(&self, exponent: u64) -> BigInt {
         &self.numerator << (exponent - self.exponent)
     }
 
-    /// Returns the midpoint.
+    /// Returns the midpoint of two times.
     pub(super) fn between(&self, other: &Self) -> Self {
         let exponent = self.exponent.max(other.exponent);
         Self { numerator: self.numerator_over(exponent) + other.numerator_over(exponent), exponent: exponent + 1 }
     }
 
-    /// Returns whether it is 1.
+    /// Returns whether the time is 1.
     pub(super) fn is_one(&self) -> bool {
         self.numerator == BigInt::from(1) << self.exponent
     }
 
-    /// Returns the greatest double that is not above, and the least that is not below.
+    /// Returns the largest double that is not above, and the smallest that is not below.
     pub(super) fn enclosure(&self) -> [f64; 2] {
         let bits = self.numerator.bits();
         let dropped = bits.saturating_sub(53);
@@ -45,14 +45,14 @@ impl Dyadic {
         let scale = i128::from(dropped) - i128::from(self.exponent);
         let Ok(scale) = i32::try_from(scale) else { return [0.0, f64::from_bits(1)] };
         if scale < -1074 {
-            // Too small for a full mantissa: enclose coarsely. Zero itself is exact.
+            // Too small for a full mantissa, so the enclosure is coarse. Zero itself is exact.
             return if top == 0 { [0.0; 2] } else { [0.0, scaled(top + 1, -1074)] };
         }
         [scaled(top, scale), scaled(if exact { top } else { top + 1 }, scale)]
     }
 }
 
-/// Returns `integer * 2^exponent` for an integer up to `2^53`, exact for exponents in `-1074..=0` with a result of at
+/// Returns `integer * 2^exponent` for an integer up to `2^53`; exact for exponents in `-1074..=0` with a result of at
 /// most 1.
 fn scaled(integer: u64, exponent: i32) -> f64 {
     let power = |exponent: i32| f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
@@ -79,7 +79,7 @@ mod tests {
 
     #[test]
     fn others_lie_between_neighbors() {
-        // 2^60 + 1 over 2^61: just above a half.
+        // 2^60 + 1 over 2^61: just above one half.
         assert_eq!(dyadic("1152921504606846977", 61).enclosure(), [0.5, 0.5_f64.next_up()]);
         // 2^54 - 1 over 2^54 rounds up to 1.
         assert_eq!(dyadic("18014398509481983", 54).enclosure(), [1.0_f64.next_down(), 1.0]);

@@ -1,18 +1,18 @@
-//! Polynomials with integer coefficients: the operations that the exact decision needs.
+//! Polynomials with integer coefficients, with the operations for the exact decision.
 //!
 //! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They
-//! are nearly always constant, which one run modulo a prime shows for a fraction of the price.
-use super::{super::short::split, dyadic::Dyadic};
+//! are nearly always constant, which one computation modulo a prime shows at a fraction of the cost.
+use super::{super::short_numbers::split, dyadic::Dyadic};
 use num_bigint::{BigInt, Sign};
 
 /// A prime: `2^61 - 1`.
 const PRIME: u64 = (1 << 61) - 1;
 
-/// Coefficients, lowest power first; the last is not zero. The zero polynomial has none.
+/// The coefficients, lowest power first; the last is not zero. The zero polynomial has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Integer(Vec<BigInt>);
 
-/// Returns -1, 0 or 1.
+/// Returns the sign of a number: -1, 0 or 1.
 fn sign(value: &BigInt) -> i8 {
     match value.sign() {
         Sign::Minus => -1,
@@ -22,7 +22,7 @@ fn sign(value: &BigInt) -> i8 {
 }
 
 impl Integer {
-    /// Creates the polynomial with these coefficients.
+    /// Creates the polynomial with the given coefficients.
     pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(|last| last.sign() == Sign::NoSign) {
             coefficients.pop();
@@ -35,7 +35,7 @@ impl Integer {
         Self(vec![BigInt::from(1)])
     }
 
-    /// Returns a positive multiple of the polynomial with these finite coefficients, highest power first.
+    /// Returns a positive multiple of the polynomial with the finite coefficients `list`, highest power first.
     pub(super) fn from_doubles(list: &[f64]) -> Self {
         let lowest = |&value: &f64| {
             let (mantissa, exponent) = split(value);
@@ -87,7 +87,7 @@ impl Integer {
         sign(&value)
     }
 
-    /// Returns the sign right after a time: that of the first derivative that is not zero there.
+    /// Returns the sign right after a time, which is that of the first nonzero derivative.
     pub(super) fn sign_after(&self, time: &Dyadic) -> i8 {
         let mut derivative = self.clone();
         while !derivative.0.is_empty() {
@@ -100,7 +100,7 @@ impl Integer {
         0
     }
 
-    /// Returns whether it is positive right after 1.
+    /// Returns whether the polynomial is positive right after 1.
     pub(super) fn positive_right_of_one(&self) -> bool {
         self.sign_after(&Dyadic::one()) > 0
     }
@@ -147,7 +147,7 @@ impl Integer {
         Self(self.0.iter().map(|value| value / &content).collect())
     }
 
-    /// Returns the remainder of a positive multiple of `self`, for a divisor that is not zero.
+    /// Returns the remainder of a positive multiple of `self`; the divisor must not be zero.
     fn pseudo_remainder(&self, divisor: &Self) -> Self {
         let mut rest = self.clone();
         let leading = &divisor.0[divisor.degree()];
@@ -165,7 +165,7 @@ impl Integer {
         rest
     }
 
-    /// Returns the primitive greatest common divisor; neither is zero.
+    /// Returns the primitive greatest common divisor; neither polynomial may be zero.
     fn common_factor(&self, other: &Self) -> Self {
         if self.coprime_modulo_prime(other) {
             return Self::one();
@@ -178,8 +178,8 @@ impl Integer {
         if a.degree() == 0 { Self::one() } else { a }
     }
 
-    /// Returns whether the two have no common zero modulo [`PRIME`], which proves that they have none at all: reduction
-    /// keeps a common factor's degree if it keeps a leading coefficient.
+    /// Returns whether the two have no common zero modulo [`PRIME`]. This proves that they have none at all, because
+    /// reduction keeps a common factor's degree if it keeps a leading coefficient.
     fn coprime_modulo_prime(&self, other: &Self) -> bool {
         let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(modulo_prime).collect() };
         let (mut a, mut b) = (reduced(self), reduced(other));
@@ -193,7 +193,7 @@ impl Integer {
         a.len() == 1
     }
 
-    /// Returns the quotient by a primitive divisor that divides.
+    /// Returns the quotient by a primitive divisor without remainder.
     fn divided_by(&self, divisor: &Self) -> Self {
         if divisor.degree() == 0 {
             return self.clone();
@@ -212,19 +212,19 @@ impl Integer {
         Self::new(quotient)
     }
 
-    /// Returns a polynomial with the same zeros, each simple; `self` is not zero.
+    /// Returns a polynomial with the same zeros, each simple; `self` must not be zero.
     pub(super) fn square_free(&self) -> Self {
         let derivative = self.derivative();
         if derivative.0.is_empty() { self.clone() } else { self.divided_by(&self.common_factor(&derivative)) }
     }
 
-    /// Returns a square-free polynomial with the zeros of both, which are square-free and not zero.
+    /// Returns a square-free polynomial with the zeros of both; both must be square-free and not zero.
     pub(super) fn united(&self, other: &Self) -> Self {
         self.times(&other.divided_by(&self.common_factor(other)))
     }
 }
 
-/// Returns the greatest common divisor by Euclid's algorithm, not negative.
+/// Returns the nonnegative greatest common divisor, by Euclid's algorithm.
 fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
     while b.sign() != Sign::NoSign {
         let rest = &a % &b;

@@ -1,19 +1,20 @@
-//! Isolation of the real zeros of a square-free polynomial within the step.
+//! Isolates the real zeros of a square-free polynomial within the step.
 //!
-//! Descartes' rule of signs in the variable `1/(1+t)` counts the zeros in `(0, 1)` up to an even number and is exact
-//! for none and one; halving the interval gets there (Collins and Akritas, 1976; it ends because zeros are simple).
+//! Descartes' rule of signs in the variable `1/(1+t)` counts the zeros in `(0, 1)` up to an even number, and is exact
+//! for none and one. Intervals are halved until the count is exact (Collins and Akritas, 1976); this ends because the
+//! zeros are simple.
 use super::{dyadic::Dyadic, integer::Integer};
 use num_bigint::{BigInt, Sign};
 
 /// The number of halvings of an isolating interval after which its enclosure is narrower than a double can express.
 const NARROW: u64 = 60;
 
-/// A zero between two times, at which the polynomial is not zero; or at a time, when both are equal.
+/// A zero between two times at which the polynomial is not zero, or exactly at a time, if both are equal.
 #[derive(Debug, Clone)]
 pub(super) struct Root {
-    /// Before, or the zero itself.
+    /// A time before the zero, or the zero itself.
     pub(super) lo: Dyadic,
-    /// After, or the zero itself.
+    /// A time after the zero, or the zero itself.
     pub(super) hi: Dyadic,
 }
 
@@ -23,18 +24,18 @@ impl Root {
         Self { lo: time.clone(), hi: time }
     }
 
-    /// Returns whether it is known exactly.
+    /// Returns whether the zero is known exactly.
     pub(super) fn is_point(&self) -> bool {
         self.lo == self.hi
     }
 
-    /// Returns whether it is exactly 1.
+    /// Returns whether the zero is exactly 1.
     pub(super) fn is_one(&self) -> bool {
         self.is_point() && self.hi.is_one()
     }
 
-    /// Returns two doubles around it: equal if it was met exactly, else a few units of `2^-60` of the step or the
-    /// neighbors.
+    /// Returns two doubles around the zero: equal if the zero is exact, otherwise a few units of `2^-60` of the step
+    /// apart, or neighbors.
     pub(super) fn enclosure(&self, polynomial: &Integer) -> [f64; 2] {
         let mut root = self.clone();
         let before = polynomial.sign_at(&root.lo);
@@ -61,8 +62,8 @@ impl Root {
     }
 }
 
-/// Returns the zeros in the open interval `(0, 1)` of a square-free polynomial that is not zero, ascending and apart:
-/// intervals may share an end, but no end of an interval is a zero.
+/// Returns the zeros in the open interval `(0, 1)` of a square-free polynomial that is not zero, ascending and
+/// separated. Intervals may share an end, but no end of an interval is a zero.
 pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     let mut roots = Vec::new();
     // Intervals to check, the leftmost last: the polynomial stretched so that the interval becomes (0, 1), and the
@@ -95,11 +96,11 @@ pub(super) fn roots_within_step(polynomial: &Integer) -> Vec<Root> {
     roots
 }
 
-/// An interval that is not decided yet.
+/// A part of the step that is not decided yet.
 enum PendingPart {
-    /// From `start / 2^exponent` on, `1 / 2^exponent` wide.
+    /// An interval from `start / 2^exponent` with the length `1 / 2^exponent`.
     Interval(Integer, BigInt, u64),
-    /// A zero.
+    /// An exact zero.
     Point(Dyadic),
 }
 
@@ -110,7 +111,8 @@ fn variations(polynomial: &Integer) -> usize {
     signs.clone().zip(signs.skip(1)).filter(|(one, next)| one != next).count()
 }
 
-/// Returns the only zero in an open interval whose ends may be zeros, too: narrowed until they are none.
+/// Returns the only zero in an open interval whose ends may be zeros as well; the interval is narrowed until they are
+/// not.
 fn isolate_root(polynomial: &Integer, start: BigInt, exponent: u64) -> Root {
     let end: BigInt = &start + 1;
     let (lo, hi) = (Dyadic { numerator: start, exponent }, Dyadic { numerator: end, exponent });

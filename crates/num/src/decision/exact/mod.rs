@@ -1,12 +1,12 @@
-//! The exact decision: integers instead of rounding. L3 of [`super::decide`], and the reference that tests compare
-//! with.
+//! The exact decision, with integers instead of rounding. It is L3 of [`super::decide`], and the reference for tests.
 //!
-//! Doubles are integers times powers of two, so each polynomial is one with integer coefficients times a positive
-//! factor, which no sign depends on. The zeros of all of them are those of one square-free polynomial; they are
-//! isolated between dyadic fractions (`isolate`), and signs at one time per gap say everything about the positive sets.
+//! Doubles are integers times powers of two, so each polynomial is a positive factor times one with integer
+//! coefficients, and signs do not depend on the factor. The zeros of all of them are those of one square-free
+//! polynomial. They are isolated between dyadic fractions (`isolate`), and the signs at one time per gap determine the
+//! positive sets.
 //!
-//! Never rounds, except the enclosure of the time outwards at the end. Allocates, takes microseconds to a millisecond,
-//! and more for coefficients whose exponents are far apart.
+//! The decision never rounds, except the enclosure of the time outward at the end. It allocates, and takes microseconds
+//! to a millisecond, or more for coefficients whose exponents are far apart.
 mod dyadic;
 mod integer;
 mod isolate;
@@ -18,30 +18,30 @@ use isolate::{Root, roots_within_step};
 /// Whether and when `tau` is reached, for coefficients without errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ExactAnswer {
-    /// `tau > 1`.
+    /// The time `tau` is greater than 1.
     Never,
-    /// `tau <= 1`.
+    /// The time `tau` is at most 1.
     First {
-        /// Encloses `tau`, a fraction of the step in `[0, 1]`; both ends are equal when it is a double.
+        /// Encloses `tau`, a fraction of the step in `[0, 1]`; both ends are equal if `tau` is a double.
         time: [f64; 2],
-        /// There is no time in `[0, 1]` at which all polynomials are positive: only the closures of their positive sets
-        /// meet, for instance because one becomes positive just when another stops being so, or all become positive
-        /// right after 1. The slightest change of a coefficient may undo this.
+        /// Whether only the closures of the positive sets meet, and there is no time in `[0, 1]` at which all
+        /// polynomials are positive. For example, one becomes positive exactly when another stops, or all become
+        /// positive right after 1. The slightest change of a coefficient may undo this.
         touching: bool,
     },
     /// A coefficient is infinite or NaN; nothing is decided.
     NotFinite,
 }
 
-/// Decides whether `tau <= 1`, exactly: whether the closures of the sets where each polynomial is positive meet in
-/// `(0, 1]`. Coefficients come highest power first, untrimmed and of any number.
+/// Decides whether `tau <= 1`, exactly: whether the closures of the sets where each polynomial is positive meet in `(0,
+/// 1]`. Coefficients must be in the order highest power first, untrimmed, of any number.
 ///
-/// * A zero at which a polynomial does not change its sign from above leaves no hole: `t^2 - t + 1/4` is positive
-///   always.
-/// * A set that ends at exactly 0 does not count, one that starts at exactly 1 does; `tau` is 0 if all are positive
+/// * A zero at which a positive polynomial does not change its sign does not interrupt the set: `t² - t + 1/4` is
+///   always positive.
+/// * A set that ends at exactly 0 does not count; a set that starts at exactly 1 does. `tau` is 0 if all are positive
 ///   right after 0.
-/// * No polynomials, an empty one, or one that vanishes identically: [`ExactAnswer::Never`].
-/// * `c t^m` keeps its sign; the original takes it as nowhere positive (root-finder.md 17.1).
+/// * Without polynomials, or with one that is empty or zero, the answer is [`ExactAnswer::Never`].
+/// * `c t^m` keeps its sign; the original treats it as nowhere positive (root-finder.md 17.1).
 #[must_use]
 pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
     if polynomials.iter().any(|list| list.iter().any(|value| !value.is_finite())) {
@@ -51,7 +51,7 @@ pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
     if polynomials.is_empty() || polynomials.iter().any(Integer::never_positive_after_zero) {
         return ExactAnswer::Never;
     }
-    // A polynomial that is positive throughout (0, infinity) does not matter.
+    // A polynomial that is positive on the whole interval (0, infinity) does not matter.
     let polynomials: Vec<Integer> = polynomials.into_iter().filter(|one| !one.always_positive_after_zero()).collect();
     let zeros = polynomials.iter().fold(Integer::one(), |product, one| product.united(&one.square_free()));
     let mut roots = roots_within_step(&zeros);
@@ -89,12 +89,12 @@ fn first_time(polynomials: &[Integer], zeros: &Integer, roots: &mut [Root]) -> E
     found.map_or(ExactAnswer::Never, |index| ExactAnswer::First { time: roots[index].enclosure(zeros), touching })
 }
 
-/// Returns whether each is positive at a time.
+/// Returns whether each polynomial is positive at a time.
 fn signs_at(polynomials: &[Integer], time: &Dyadic) -> Vec<bool> {
     polynomials.iter().map(|polynomial| polynomial.sign_at(time) > 0).collect()
 }
 
-/// Returns a time between 0 and the first root; no polynomial is zero there.
+/// Returns a time between 0 and the first root, at which no polynomial is zero.
 fn first_sample(roots: &[Root]) -> Dyadic {
     match roots.first() {
         None => Dyadic::one(),
@@ -103,7 +103,7 @@ fn first_sample(roots: &[Root]) -> Dyadic {
     }
 }
 
-/// Returns a time between this root and the next, or 1; no polynomial is zero there. `None` after a root at 1.
+/// Returns a time between root `index` and the next, or 1, at which no polynomial is zero; `None` after a root at 1.
 fn sample_after(roots: &[Root], index: usize) -> Option<Dyadic> {
     let root = &roots[index];
     if root.is_one() {

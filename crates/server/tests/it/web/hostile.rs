@@ -308,7 +308,7 @@ fn archives_of_all_kinds_are_graded() {
             (b"\xcf\xfa\xed\xfe\x0c\x00", "found a program for macOS"),
             (b"Rar!\x1a\x07\x00", "found a RAR archive"),
             (b"7z\xbc\xaf\x27\x1c\x00\x04", "found a 7z archive"),
-            (b"\xfd7zXZ\0\0\x04", "found a file packed by xz"),
+            (b"\xfd7zXZ\0\0\x04", "found a file compressed by xz"),
             (b"int main() { return 0; }\n", "found text"),
             (b"\x01\x02\x03\x04\x05", "found a file that begins with the bytes 01 02 03 04"),
         ] {

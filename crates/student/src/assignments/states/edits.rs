@@ -1,4 +1,4 @@
-//! The rows that follow from quantities and slips: each slip in each quantity that it fits.
+//! The rows made from quantities and slips: each slip in each quantity that it fits.
 use super::{
     slips::Slip,
     steps::StepMistake,
@@ -25,7 +25,7 @@ fn row(of: &'static TermRow, slip: Slip) -> RowOf<StepMistake> {
     }
 }
 
-/// All these rows; rows of functions that are not written come first.
+/// All edit rows; rows of unwritten functions come first.
 pub static EDITS: LazyLock<Vec<RowOf<StepMistake>>> = LazyLock::new(|| {
     let of = |row: &'static TermRow| row.slips.iter().copied().flatten().map(move |slip| (row, *slip));
     let mut all: Vec<(&TermRow, Slip)> = TERMS.iter().flat_map(of).collect();

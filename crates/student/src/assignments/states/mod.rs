@@ -1,5 +1,5 @@
-//! The parts that milestones before collisions share with those behind them: forces, integrators, the penalty force and
-//! simple responses. Their programs log states only, not the way to them.
+//! The parts shared by all milestones: forces, integrators, the penalty force and simple responses. Their programs log
+//! only states, not intermediate results.
 mod edits;
 pub(super) mod probes;
 mod slips;

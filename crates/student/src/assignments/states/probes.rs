@@ -1,4 +1,4 @@
-//! Probe scenes of the milestones that log states: they show what the scenes of their suites leave open.
+//! Probe scenes of the milestones that log states. They show mistakes that the scenes of the suites do not.
 use fosssim_model::assignments::Assignment;
 
 macro_rules! probes {

@@ -1,5 +1,5 @@
-//! Slips, the small changes with which quantities of a program go wrong: the same few everywhere.
-/// The table: each slip with the words of a sentence about it, behind the quantity's name.
+//! Slips, which are small changes that make quantities of a program wrong. The same few slips apply everywhere.
+/// The table of slips, each with its part of a sentence, which follows the quantity's name.
 macro_rules! slips {
     ($($(#[$about:meta])* $slip:ident$(($by:ty))? $words:literal;)*) => {
         /// A small change of a quantity. A row of the catalogue is a slip in a [quantity](super::Term).
@@ -7,7 +7,7 @@ macro_rules! slips {
         pub enum Slip { $(#[doc = $words] $(#[$about])* $slip$(($by))?,)* }
 
         impl Slip {
-            /// Returns the words that fit any quantity.
+            /// Returns the part of a sentence about the slip that fits any quantity.
             pub(super) const fn describe(self) -> &'static str {
                 match self { $(Self::$slip { .. } => $words,)* }
             }
@@ -19,57 +19,57 @@ slips! {
     Missing "is missing";
     Sign "has the wrong sign";
     Assigned "replaces the sum so far instead of being added to it";
-    Doubled "is twice what it should be";
-    Halved "is half of what it should be";
+    Doubled "is twice the right value";
+    Halved "is half of the right value";
     Absolute "loses its sign by an absolute value";
     Squared "grows with the square of the stretch or depth, whatever its sign";
-    SquaredHalf "is half of a square, as it is in the energy";
+    SquaredHalf "is half of a square, like in the energy";
     SquaredAway "grows with the square of the depth";
-    /// Multiplied by this power of the mass.
+    /// Multiplies the term by this power of the mass.
     Mass(i8) "has another factor";
-    /// Multiplied by this power of the step size.
+    /// Multiplies the term by this power of the step size.
     Step(i8) "has another factor";
-    /// Multiplied by this power of the distance.
+    /// Multiplies the term by this power of the distance.
     Length(i8) "has another factor";
     FirstMass "is multiplied by the mass of the first of its two bodies";
     MassOfFirst "has the mass of the first particle for all";
     XOnly "loses its vertical component";
     YOnly "loses its horizontal component";
     Exchanged "has its two components exchanged";
-    XForBoth "has the horizontal component in both places";
-    YForBoth "has the vertical component in both places";
-    FirstOnly "acts on the first of its bodies only";
+    XForBoth "has the horizontal component twice";
+    YForBoth "has the vertical component twice";
+    FirstOnly "acts only on the first of its bodies";
     SecondOnly "does not act on the first of its bodies";
     SameSign "has the same direction for both bodies instead of opposite ones";
-    FirstOut "leaves the first particle out";
-    LastOut "leaves the last particle out";
-    OnlyFirst "reaches the first particle only";
-    FixedForgotten "treats fixed particles as free ones";
-    FixedStand "leaves fixed particles where they are, even those with a velocity";
-    FixedStopped "sets the velocity of fixed particles to zero, so that they stand still";
+    FirstOut "omits the first particle";
+    LastOut "omits the last particle";
+    OnlyFirst "acts only on the first particle";
+    FixedForgotten "treats fixed particles like free ones";
+    FixedStand "does not move fixed particles, even those with a velocity";
+    FixedStopped "sets the velocity of fixed particles to zero, so they do not move";
     FixedHalted "sets the velocity of fixed particles to zero once they have moved";
-    Behind "has the forces after the positions have moved instead of those before";
-    NotCleared "has the forces of all earlier steps in it: their sum is not cleared";
+    Behind "uses the forces after the positions have moved instead of before";
+    NotCleared "contains the forces of all earlier steps, because the sum is not cleared";
     MatrixSign "has the derivatives with the wrong sign in its matrix";
     RowsOfFixed "leaves the rows and columns of fixed particles in its matrix";
     DiagonalOfFixed "sets the diagonal for fixed particles, but does not clear their rows and columns";
     RightOfFixed "leaves the entries of fixed particles in its right-hand side";
-    /// Newton's method ends after this many iterations.
+    /// Newton's method ends after this number of iterations.
     Iterations(u8) "ends after a fixed number of iterations";
-    /// Newton's method ends at a change below ten to minus this.
-    Loose(i8) "ends too early, at a larger change than the assignment asks for";
-    OtherVelocity "has the old velocity instead of the new one";
-    MeanVelocity "has the mean of the old and the new velocity";
+    /// Newton's method ends at a change below ten to the power of minus this.
+    Loose(i8) "ends too early, at a larger change than the assignment requires";
+    OtherVelocity "uses the old velocity instead of the new one";
+    MeanVelocity "uses the mean of the old and the new velocity";
     DiagonalOnly "lacks the blocks off the diagonal";
     OffDiagonalSign "has the wrong sign off the diagonal";
     OneHalf "lacks one of its two blocks off the diagonal";
-    OtherMatrix "is added to the wrong one of the two matrices";
+    OtherMatrix "is added to the wrong matrix";
     NotStrict "counts equality, too";
-    EndRadius "has the radius of the edge's first end instead of the edge's own";
-    Unclamped "takes the closest point from the whole line, beyond the ends of the edge, too";
+    EndRadius "uses the radius of the edge's first end instead of the edge's own";
+    Unclamped "uses the closest point of the whole line, even beyond the ends of the edge";
     Mirrored "measures from the wrong end of the edge";
-    Negated "looks for the closest point of an edge in the wrong direction from its first end";
-    Middle "has the middle of the edge instead of its closest point";
+    Negated "measures the closest point of an edge in the wrong direction from its first end";
+    Middle "uses the middle of the edge instead of its closest point";
     EndsOut "finds nothing beyond the ends of an edge";
     ToPoint "goes to the point that defines the half-plane instead of its closest point";
     Undivided "has the half-plane's normal with its own length instead of a unit vector";
@@ -77,50 +77,50 @@ slips! {
     OneSidedLong "is along the half-plane's normal as it is given, on both of its sides";
     OneSidedBack "has the opposite direction of the half-plane's normal, on both of its sides";
     Unit "is normalized, although its length must be the distance";
-    NoFactor "takes the coefficient of restitution as one";
-    Inelastic "takes the coefficient of restitution as zero";
-    RestitutionOnly "has the coefficient of restitution alone, without one added to it";
+    NoFactor "uses one as the coefficient of restitution";
+    Inelastic "uses zero as the coefficient of restitution";
+    RestitutionOnly "uses the coefficient of restitution without adding one";
     NoRadii "ignores the radii";
     NoOtherRadius "ignores the radius of the other body";
     NoThickness "ignores the thickness of the layer";
-    ThicknessInTest "has the thickness of the layer in its test, but not in the depth";
-    ThicknessInDepth "has the thickness of the layer in the depth, but not in its test";
+    ThicknessInTest "uses the thickness of the layer in its test, but not in the depth";
+    ThicknessInDepth "uses the thickness of the layer in the depth, but not in its test";
     Always "also acts on bodies that are apart";
     EqualMasses "ignores the masses";
     SwappedMasses "has the masses exchanged";
-    FixedFinite "counts a fixed particle with its mass instead of as infinitely heavy";
-    FixedAsFree "treats fixed particles as free ones, with their mass";
-    FixedSpared "leaves fixed particles as they are, which the assignment does not ask for here";
-    Sequential "computes later changes with velocities that it has changed before";
-    StartVelocity "has the velocities before the pass instead of those that earlier pairs left";
+    FixedFinite "uses the mass of a fixed particle instead of an infinite mass";
+    FixedAsFree "treats fixed particles like free ones, with their mass";
+    FixedSpared "does not change fixed particles, which the assignment does not require here";
+    Sequential "computes later changes with already changed velocities";
+    StartVelocity "uses the velocities before the pass instead of those after earlier pairs";
     Whole "changes the whole velocity instead of its part along the normal";
-    Unsquared "does not square the shares of the ends where masses are weighed";
+    Unsquared "does not square the shares of the ends in the weighted masses";
     FullShares "acts on each end of the edge as if it were the only one";
     SharesExchanged "exchanges the shares of the edge's ends";
     EqualShares "is shared equally between the ends of the edge";
-    OneEnd "forgets the second end of the edge";
+    OneEnd "omits the second end of the edge";
 }
 
-/// The slips of everything that is added to a sum.
+/// The slips of quantities that are added to a sum.
 pub(super) const SUM: &[Slip] = &[Slip::Missing, Slip::Sign, Slip::Doubled, Slip::Halved];
-/// Slips of a vector.
+/// The slips of a vector.
 pub(super) const VECTOR: &[Slip] = &[Slip::XOnly, Slip::YOnly, Slip::Exchanged];
-/// Slips of what each particle gets.
+/// The slips of quantities for each particle.
 pub(super) const EACH: &[Slip] = &[Slip::FirstOut, Slip::LastOut, Slip::OnlyFirst];
-/// Slips of the force on each particle.
+/// The slips of the force on each particle.
 pub(super) const FORCE: &[Slip] = &[Slip::Assigned, Slip::Mass(1), Slip::Mass(-1), Slip::Step(1)];
-/// Slips of what two bodies get.
+/// The slips of quantities for two bodies.
 pub(super) const PAIR: &[Slip] = &[Slip::FirstOnly, Slip::SecondOnly, Slip::SameSign];
-/// Slips of the number before a direction.
+/// The slips of the factor of a direction.
 pub(super) const NUMBER: &[Slip] = &[Slip::Absolute, Slip::Squared, Slip::SquaredHalf, Slip::FirstMass];
-/// Slips of what depends on the distance.
+/// The slips of quantities that depend on the distance.
 pub(super) const DISTANCE: &[Slip] = &[Slip::Length(1), Slip::Length(2), Slip::Length(-1)];
-/// Slips of blocks of a matrix of two bodies.
+/// The slips of matrix blocks for two bodies.
 pub(super) const BLOCKS: &[Slip] =
     &[Slip::DiagonalOnly, Slip::OffDiagonalSign, Slip::OneHalf, Slip::FirstOnly, Slip::SecondOnly, Slip::Assigned];
 
 impl Slip {
-    /// Returns whether bodies at which nothing should act stay without any effect.
+    /// Returns whether bodies without a force stay unaffected.
     pub fn keeps_distance(self) -> bool {
         use Slip::{Always, EndRadius, Middle, Mirrored, Negated, ToPoint, Unclamped, Undivided};
         !matches!(self, Always | EndRadius | Middle | Mirrored | Negated | ToPoint | Unclamped | Undivided)

@@ -1,4 +1,4 @@
-//! The quantities of the programs of the milestones that log states, in which each slip can be made.
+//! The quantities in programs of the milestones that log states, in which slips can be made.
 use super::slips::{BLOCKS, DISTANCE, EACH, FORCE, NUMBER, PAIR, SUM, Slip, VECTOR};
 use crate::assignments::rows::Area;
 use fosssim_model::assignments::{ForceKind, Integrator, PairKind, Part};
@@ -6,23 +6,23 @@ use fosssim_model::assignments::{ForceKind, Integrator, PairKind, Part};
 /// The row of a quantity in the catalogue.
 #[derive(Debug)]
 pub struct TermRow {
-    /// Which one.
+    /// The quantity.
     pub term: Term,
-    /// The beginning of its rows' names.
+    /// The beginning of its rows' ids.
     pub id: &'static str,
     /// The beginning of its rows' sentences.
     pub subject: &'static str,
     /// The quantity's formula, in the letters of the assignment.
     pub formula: &'static str,
-    /// The part of a student's work.
+    /// The part of a student's work that computes the quantity.
     pub part: Part,
-    /// The powers of the mass, the step size and the distance in its formula.
+    /// The powers of the mass, the step size and the distance in the formula.
     pub(super) mass: i8,
     pub(super) step: i8,
     pub(super) length: i8,
-    /// Whether it is all that a function of the student's computes.
+    /// Whether a function of the student computes only this quantity.
     pub is_function: bool,
-    /// The slips that can be made in it.
+    /// The slips that can be made in the quantity.
     pub(super) slips: &'static [&'static [Slip]],
 }
 
@@ -295,7 +295,7 @@ terms! {
 }
 
 impl TermRow {
-    /// Returns the part of the assignment.
+    /// Returns the area of the assignment.
     pub const fn area(&self) -> Area {
         match self.part {
             Part::Force(_) => Area::Forces,
@@ -309,7 +309,7 @@ impl TermRow {
 }
 
 impl Term {
-    /// Returns the quantity of which this is a part.
+    /// Returns the quantity of which this one is a part.
     const fn whole(self) -> Option<Self> {
         Some(match self {
             Self::SpringElastic | Self::SpringDamping => Self::Spring,
@@ -320,7 +320,7 @@ impl Term {
         })
     }
 
-    /// Returns whether a slip in this quantity is also a slip in the other.
+    /// Returns whether a slip in this quantity is also a slip in `other`.
     pub fn covers(self, other: Self) -> bool {
         let mut part = Some(other);
         while let Some(one) = part {
@@ -341,20 +341,20 @@ impl Term {
 /// A slip in a quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Edit {
-    /// The quantity.
+    /// The quantity that is changed.
     pub term: Term,
-    /// The slip.
+    /// The slip in the quantity.
     pub slip: Slip,
 }
 
 impl Edit {
-    /// Returns the part of the assignment to which it belongs.
+    /// Returns the area of the assignment to which the edit belongs.
     #[must_use]
     pub const fn area(self) -> Area {
         self.term.row().area()
     }
 
-    /// Returns whether it leaves a function of the student's as it is in the starter code.
+    /// Returns whether the slip is an unwritten function of the starter code.
     #[must_use]
     pub const fn is_empty_function(self) -> bool {
         matches!(self.slip, Slip::Missing) && self.term.row().is_function

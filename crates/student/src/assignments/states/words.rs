@@ -3,7 +3,7 @@ use super::{slips::Slip, terms::TermRow};
 use crate::assignments::rows::Area;
 
 impl Slip {
-    /// Returns the slip's part of a row's name.
+    /// Returns the slip's part of a row's id.
     pub(super) fn id(self) -> String {
         let power = |name: &str, power: i8| match power {
             1 => name.to_owned(),
@@ -30,7 +30,7 @@ impl Slip {
         }
     }
 
-    /// Returns the words of a sentence about it, behind the quantity's name.
+    /// Returns the part of a sentence about the slip, which follows the quantity's name.
     pub(super) fn predicate(self, of: &TermRow) -> String {
         let text = match self {
             Self::Missing if of.is_function => match of.area() {
@@ -45,9 +45,9 @@ impl Slip {
             Self::Mass(by) => return power(of.mass, by, "the mass"),
             Self::Step(by) => return power(of.step, by, "the step size"),
             Self::Length(1) if of.length == 0 => "has a direction that is not normalized",
-            Self::Length(2) if of.length == 0 => "has a direction that is not normalized, in both of its places",
+            Self::Length(2) if of.length == 0 => "has a direction that is not normalized in both places",
             Self::Length(1) if of.length < -1 => {
-                "is divided by the distance once too seldom, or its direction is not normalized"
+                "lacks one division by the distance, or its direction is not normalized"
             }
             Self::Length(by) => return power(of.length, by, "the distance"),
             Self::FirstOnly if of.area() == Area::SimpleDetection => {
@@ -58,14 +58,14 @@ impl Slip {
             }
             Self::FirstOnly if of.area() == Area::Jacobians => "lacks the second particle's block on the diagonal",
             Self::SecondOnly if of.area() == Area::Jacobians => "lacks the first particle's block on the diagonal",
-            Self::OtherVelocity if of.id.starts_with("explicit") => "has the new velocity instead of the old one",
+            Self::OtherVelocity if of.id.starts_with("explicit") => "uses the new velocity instead of the old one",
             Self::NoFactor if of.id.starts_with("penalty") => "ignores the stiffness",
             other => other.describe(),
         };
         text.to_owned()
     }
 
-    /// Returns the exact form of a quantity with this formula, which should be there without it.
+    /// Returns the exact form of the slip: the changed and the right formula of the quantity.
     pub(super) fn exact(self, of: &TermRow) -> String {
         let formula = of.formula;
         let with = |factor: &str| format!("{factor} ({formula}) is used instead of {formula}.");
@@ -87,24 +87,24 @@ impl Slip {
             Self::XOnly => format!("Only the x component of {formula} is used."),
             Self::YOnly => format!("Only the y component of {formula} is used."),
             Self::Iterations(count) => format!("The loop ends after iteration {count}; it should be {formula}."),
-            Self::Loose(digits) => format!("The loop ends at some 1e-{digits}; it should be {formula}."),
+            Self::Loose(digits) => format!("The loop ends at about 1e-{digits}; it should be {formula}."),
             _ => format!("It should be {formula}."),
         }
     }
 }
 
-/// Returns the meaning of a further power of a factor that has this power already.
+/// Returns the description of a further power `by` of a factor that has the power `has`.
 fn power(has: i8, by: i8, factor: &str) -> String {
     match (has.signum(), (has + by).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),
         (0, _) => format!("is divided by {factor}"),
         (1, 0) => format!("is not multiplied by {factor}"),
-        (1, 1) if by > 0 => format!("is multiplied by {factor} once too often"),
-        (1, 1) => format!("is multiplied by {factor} once too seldom"),
+        (1, 1) if by > 0 => format!("is multiplied by {factor} one time too many"),
+        (1, 1) => format!("is multiplied by {factor} one time too few"),
         (1, _) => format!("is divided by {factor} instead of multiplied by it"),
         (_, 0) => format!("is not divided by {factor}"),
         (_, 1) => format!("is multiplied by {factor} instead of divided by it"),
-        _ if by < 0 => format!("is divided by {factor} once too often"),
-        _ => format!("is divided by {factor} once too seldom"),
+        _ if by < 0 => format!("is divided by {factor} one time too many"),
+        _ => format!("is divided by {factor} one time too few"),
     }
 }

@@ -14,7 +14,7 @@ use super::{
     specials::*,
 };
 
-/// A row of any table.
+/// A row of the catalogue, with the mistake as a [`Mistake`].
 pub type Row = RowOf<Mistake>;
 
 impl From<StepMistake> for Mistake {
@@ -24,7 +24,7 @@ impl From<StepMistake> for Mistake {
 }
 
 rows! {
-    /// A difference of a program.
+    /// A difference between a student's program and the reference.
     Mistake CATALOGUE [Step StepMistake] [FormulaEdit]
     Wrong ParticleParticle "sentences/particle-particle.txt" {
         ParticleParticleEmpty "pp-empty" [Lists(Vec::clear)];

@@ -1,4 +1,4 @@
-//! Changes of the formulas of a pair, as data: the student's program and the explanation follow from one row.
+//! Changes of a pair's formulas, as data: the student's program and the explanation are derived from one row.
 use super::{
     Inputs, Subject,
     formulas::{product, readings},
@@ -6,24 +6,24 @@ use super::{
 use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::BoundedValue;
 
-/// A change of formulas that has a key and words.
+/// A change of formulas with a key and a description.
 pub struct NamedEdit {
-    /// The explanation's key.
+    /// The key of the explanation.
     pub key: &'static str,
-    /// The explanation's sentence, without its full stop.
+    /// The sentence of the explanation, without its full stop.
     pub sentence: &'static str,
-    /// The exact form.
+    /// The exact form of the change.
     pub detail: &'static str,
     /// The cost of the guess; see `study`.
     pub cost: f64,
-    /// The kinds of pairs that it concerns.
+    /// The kinds of pairs that the change concerns.
     pub(super) kinds: &'static [PairKind],
     /// The change itself.
     pub edit: FormulaEdit,
 }
 
 impl NamedEdit {
-    /// Returns the polynomial that it makes, highest power first; `None` if it does not concern this polynomial.
+    /// Returns the changed polynomial, highest power first; `None` if the change does not concern this polynomial.
     #[must_use]
     pub fn polynomial(&self, subject: Subject, inputs: &Inputs) -> Option<Vec<BoundedValue>> {
         match self.edit {
@@ -43,11 +43,11 @@ impl NamedEdit {
 pub enum FormulaEdit {
     /// A change that explanations know by its name.
     Named(&'static NamedEdit),
-    /// All formulas get other inputs.
+    /// All formulas use other inputs.
     OtherInputs(fn(&mut Inputs)),
-    /// A term of the first reading's coefficient of `t^power`, by its letters, has this factor in addition to its own.
+    /// A term of the first reading's coefficient of `t^power`, named by its letters, has this additional factor.
     Weight(Subject, usize, &'static [usize], f64),
-    /// The formula has other values for its letters.
+    /// The formula's letters have other values.
     Letters(Subject, fn(&mut [BoundedValue], &Inputs)),
     /// Another formula is used.
     Formula(Subject, fn(&Inputs) -> Vec<BoundedValue>),
@@ -58,7 +58,7 @@ pub enum FormulaEdit {
 }
 
 impl FormulaEdit {
-    /// Makes the change in the right polynomials of a pair. The approach of edges has this reading.
+    /// Applies the change to the right polynomials of a pair, with the given reading of the edge's approach.
     pub fn apply(self, inputs: &Inputs, lists: &mut Vec<Vec<f64>>, subjects: &[Subject], approach: usize) {
         let formula = |subject| &readings(subject)[if subject == Subject::EdgeApproach { approach } else { 0 }];
         let mut replace = |subject: Subject, change: &dyn Fn(&mut Vec<f64>)| {
@@ -111,18 +111,18 @@ pub(super) fn replace_by_one(list: &mut Vec<f64>) {
     *list = vec![1.0];
 }
 
-/// Forgets the first particle's displacement in the overlap.
+/// Omits the first particle's displacement in the overlap.
 pub(super) fn first_still(letters: &mut [BoundedValue], inputs: &Inputs) {
     (letters[0], letters[1]) = (inputs.d[1].dot(inputs.d[1]), inputs.x21().dot(inputs.d[1]));
 }
 
-/// Takes end positions for displacements in the overlap.
+/// Uses end positions instead of displacements in the overlap.
 pub(super) fn ends_for_displacements(letters: &mut [BoundedValue], inputs: &Inputs) {
     let end = inputs.x21() + inputs.d21();
     (letters[0], letters[1]) = (end.dot(end), inputs.x21().dot(end));
 }
 
-/// Leaves the second component out of the overlap's moving terms.
+/// Omits the second component in the overlap's moving terms.
 pub(super) fn x_only(letters: &mut [BoundedValue], inputs: &Inputs) {
     let (x, d) = (inputs.x21().x, inputs.d21().x);
     (letters[0], letters[1]) = (d * d, x * d);

@@ -1,4 +1,4 @@
-//! Quantities that do not belong into a formula, and get there.
+//! Quantities from outside a formula that students may use in it.
 use super::{Inputs, Subject, formulas::Letter, inputs::root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 

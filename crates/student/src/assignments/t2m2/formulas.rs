@@ -1,14 +1,14 @@
-//! The formulas of collisions.md 2 as data: each coefficient a sum of weighted products of letters.
+//! The formulas of collisions.md 2 as data: each coefficient is a sum of weighted products of letters.
 //!
-//! The fair rules' formulas (`judge::fair::formulas`) decide what is right, and a test compares these tables with them.
-//! As data a formula can be bent: a term dropped, a letter exchanged. The letters are those of the assignment and of
-//! the quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
+//! The fair rules' formulas (`judge::fair::formulas`) define right polynomials, and a test compares the tables with
+//! them. As data a formula can be changed: a term dropped, a letter exchanged. The letters are those of the assignment
+//! and of the quintic that the course supplies; its sums `k..o` are multiplied out, `p` and `q` are `b` and `c`.
 use super::{Inputs, Subject};
 use fosssim_num::bounded::BoundedValue;
 
 /// A quantity of a formula.
 pub struct Letter {
-    /// The name in a message.
+    /// The letter's name in messages.
     pub name: &'static str,
     /// The letter's meaning, in the assignment's notation; empty if the name explains it.
     pub meaning: &'static str,
@@ -18,19 +18,20 @@ pub struct Letter {
     pub value: fn(&Inputs) -> BoundedValue,
 }
 
-/// `weight` times the product of `letters` (indices into the formula's) in the coefficient of `t^power`.
+/// The product of `letters` (indices into the formula's letters) with the factor `weight`, in the coefficient of
+/// `t^power`.
 pub struct Term {
     /// The power of t.
     pub power: usize,
-    /// The factor in front.
+    /// The factor of the product.
     pub weight: f64,
-    /// Indices of the letters, ascending.
+    /// The indices of the letters, ascending.
     pub letters: &'static [usize],
 }
 
-/// One way to write a polynomial down.
+/// One way to write a polynomial.
 pub struct Formula {
-    /// The quantities in it.
+    /// The letters of the formula.
     pub letters: &'static [Letter],
     /// The formula's terms.
     pub terms: &'static [Term],
@@ -68,7 +69,7 @@ pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     }
 }
 
-/// Returns the ways to write one polynomial, all of them right, the assignment's first.
+/// Returns the readings of one polynomial, which are all right; the assignment's reading is first.
 pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP,
@@ -122,7 +123,7 @@ const HALF_PLANE_OVERLAP: &[Formula] = &[Formula {
 const HALF_PLANE_APPROACH: &[Formula] =
     &[Formula { letters: &HALF_PLANE, terms: &[term(1, -1.0, &[0, 0]), term(0, 1.0, &[0, 1])], degree: 1 }];
 
-/// `a..i` of the quartic, then the squared sum of the radii.
+/// The letters `a..i` of the quartic, and the squared sum of the radii.
 const EDGE: [Letter; 10] = [
     letter("a", "x12.x32", 0, |inputs| inputs.x12().dot(inputs.x32())),
     letter("b", "x12.d32 + d12.x32", 1, |inputs| inputs.x12().dot(inputs.d32()) + inputs.d12().dot(inputs.x32())),
@@ -197,7 +198,7 @@ const ALPHA_HIGH: &[Formula] = &[
     },
 ];
 
-/// `a..j` of the supplied quintic.
+/// The letters `a..j` of the supplied quintic.
 const SUPPLIED: [Letter; 10] = [
     letter("a", "x32.x32", 0, |inputs| inputs.x32().dot(inputs.x32())),
     letter("b", "x32.d32", 1, |inputs| inputs.x32().dot(inputs.d32())),
@@ -211,7 +212,7 @@ const SUPPLIED: [Letter; 10] = [
     letter("j", "d32.d21", 2, |inputs| inputs.d32().dot(inputs.d21())),
 ];
 
-/// The terms of the quintic, without the second term of t^3, of which there are two versions.
+/// The terms of the quintic, without the second term of t³, which has two versions.
 macro_rules! quintic {
     ($slip:expr) => {
         Formula {
@@ -265,5 +266,5 @@ macro_rules! quintic {
     };
 }
 
-/// As supplied, and with the right letter in t^3.
+/// The quintic as supplied, and with the right letter in t³.
 const QUINTICS: [Formula; 2] = [quintic!(term(3, -2.0, &[2, 5, 6])), quintic!(term(3, -2.0, &[2, 5, 7]))];

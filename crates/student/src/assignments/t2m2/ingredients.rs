@@ -1,15 +1,15 @@
-//! The vectors from which students make dot products.
+//! The vectors from which students form dot products.
 use super::Inputs;
 use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::BoundedVector;
 
-/// A vector that a student may have put into a dot product.
+/// A vector that a student may have used in a dot product.
 pub struct Ingredient {
-    /// The name in a message.
+    /// The vector's name in messages.
     pub name: &'static str,
     /// The ingredient's value.
     pub value: fn(&Inputs) -> BoundedVector,
-    /// The cost of the guess there.
+    /// The cost of a guess with this vector.
     pub cost: f64,
 }
 
@@ -53,7 +53,7 @@ const HALF_PLANE: &[Ingredient] = &[
     ingredient("(p-x-dx)", 0.8, |inputs| inputs.x21() - inputs.d[0]),
 ];
 
-/// Returns the vectors that a detection of this kind has at hand.
+/// Returns the vectors that are available in a detection of the given kind.
 pub const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
     match kind {
         PairKind::ParticleParticle => PARTICLES,

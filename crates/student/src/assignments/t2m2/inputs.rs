@@ -1,4 +1,4 @@
-//! The inputs of the formulas of a detection.
+//! The inputs of a detection's formulas.
 use fosssim_judge::fair::formulas::BoundedPointMotion;
 use fosssim_model::sim::{PairKind, PairMotion};
 use fosssim_num::{
@@ -6,14 +6,14 @@ use fosssim_num::{
     vector::Vec2,
 };
 
-/// The numbers that go into the formulas, with error bounds, ready to be exchanged by an explanation.
+/// The numbers used in the formulas, with error bounds. An explanation may replace them.
 #[derive(Debug, Clone, Copy)]
 pub struct Inputs {
-    /// Start positions of the particle and the other one or two points; of a half-plane its point and its normal.
+    /// The start positions of the particle and the other one or two points; for a half-plane its point and its normal.
     pub x: [BoundedVector; 3],
-    /// Displacements likewise; a half-plane has none.
+    /// The displacements of the same points; a half-plane has none.
     pub d: [BoundedVector; 3],
-    /// The radius of the particle and of the other object (0 for a half-plane).
+    /// The radii of the particle and of the other object (0 for a half-plane).
     pub radii: [BoundedValue; 2],
     /// The value for the square of the sum of the radii.
     pub square: BoundedValue,
@@ -22,7 +22,7 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Creates the inputs as they are.
+    /// Creates the inputs of a motion.
     pub fn new(motion: &PairMotion) -> Self {
         let way = BoundedPointMotion::from;
         let still =
@@ -43,13 +43,13 @@ impl Inputs {
     }
 }
 
-/// Returns the square root of a number that is not negative.
+/// Returns the square root of a nonnegative number.
 pub(super) fn root(square: BoundedValue) -> BoundedValue {
     let value = square.value.sqrt();
     BoundedValue { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
 }
 
-/// Differences that the formulas are made of. `12` is "1 minus 2"; 1 is the particle, 2 and 3 the edge's endpoints.
+/// The differences in the formulas. `12` is "1 minus 2"; 1 is the particle, 2 and 3 are the edge's endpoints.
 impl Inputs {
     pub(crate) fn x12(&self) -> BoundedVector {
         self.x[0] - self.x[1]

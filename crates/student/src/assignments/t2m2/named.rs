@@ -1,5 +1,5 @@
-//! Misunderstandings of formulas that have a name: right formulas of wrong inputs, such as positions at the end of the
-//! step, a displacement forgotten, radii squared apart, and formulas of their own.
+//! Misunderstandings of formulas that have a name: right formulas with wrong inputs, such as positions at the end of
+//! the step, a missing displacement, or radii squared separately, and wrong formulas.
 use super::{
     Inputs, Subject,
     edits::{
@@ -17,7 +17,7 @@ const PE: PairKind = PairKind::ParticleEdge;
 const PH: PairKind = PairKind::ParticleHalfPlane;
 const NOTHING: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
 
-/// Positions at the end of the step.
+/// Returns the positions at the end of the step.
 fn ends(inputs: &Inputs) -> [BoundedVector; 3] {
     std::array::from_fn(|body| inputs.x[body] + inputs.d[body])
 }
@@ -26,19 +26,19 @@ fn square(value: BoundedValue) -> BoundedValue {
     value * value
 }
 
-/// Leaves one component of all vectors out.
+/// Removes one component from all vectors.
 fn without(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
     inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::exact(0.0));
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
 
-/// Finds the change with this key.
+/// Returns the change with the given key.
 #[must_use]
 pub fn find_edit(key: &str) -> Option<&'static NamedEdit> {
     NAMED_EDITS.iter().find(|edit| edit.key == key)
 }
 
-/// The table: name, key, kinds of pairs, how unlikely it is, and the change; the sentence; the exact form.
+/// The table of named edits: name, key, kinds of pairs, cost, and the change; the sentence; the exact form.
 macro_rules! named_edits {
     ($($name:ident $key:literal $kinds:tt $cost:literal: $edit:expr => $sentence:literal => $detail:literal;)*) => {
         $(#[doc = $sentence]
@@ -51,7 +51,7 @@ macro_rules! named_edits {
             edit: $edit,
         };)*
 
-        /// All of them.
+        /// All named edits.
         pub const NAMED_EDITS: &[NamedEdit] = &[$($name,)*];
     };
 }
@@ -59,24 +59,24 @@ macro_rules! named_edits {
 named_edits! {
     END_POSITIONS "end-positions" [PP, PE, PH] 4.0: OtherInputs(|inputs| inputs.x = ends(inputs))
         => "The formulas use positions at the end of the step"
-        => "the positions x are those at the end of the step, expected those at its start";
+        => "the positions x are those at the end of the step instead of the start";
     END_FOR_DISPLACEMENT "end-for-displacement" [PP, PE, PH] 4.0: OtherInputs(|inputs| inputs.d = ends(inputs))
         => "Positions at the end of the step are used instead of displacements"
-        => "the displacements dx are end positions, expected end minus start";
+        => "the displacements dx are end positions instead of end minus start";
     DISPLACEMENT_REVERSED "displacement-reversed" [PP, PE, PH] 4.2:
         OtherInputs(|inputs| inputs.d = inputs.d.map(|d| NOTHING - d))
         => "All displacements have the wrong sign"
-        => "the displacements dx are start minus end, expected end minus start";
+        => "the displacements dx are start minus end instead of end minus start";
     PARTICLE_STILL "particle-still" [PP, PE] 4.0: OtherInputs(|inputs| inputs.d[0] = NOTHING)
-        => "The first particle's displacement is forgotten" => "dx1 is 0 in the formulas";
+        => "The first particle's displacement is missing" => "dx1 is 0 in the formulas";
     SECOND_PARTICLE_STILL "second-particle-still" [PP] 4.0: OtherInputs(|inputs| inputs.d[1] = NOTHING)
-        => "The second particle's displacement is forgotten" => "dx2 is 0 in the formulas";
+        => "The second particle's displacement is missing" => "dx2 is 0 in the formulas";
     EDGE_STILL "edge-still" [PE] 4.0: OtherInputs(|inputs| (inputs.d[1], inputs.d[2]) = (NOTHING, NOTHING))
         => "The edge is treated as if it did not move" => "dx2 and dx3 are 0 in the formulas";
     FIRST_END_STILL "first-end-still" [PE] 4.1: OtherInputs(|inputs| inputs.d[1] = NOTHING)
-        => "The displacement of the edge's first endpoint is forgotten" => "dx2 is 0 in the formulas";
+        => "The displacement of the edge's first endpoint is missing" => "dx2 is 0 in the formulas";
     SECOND_END_STILL "second-end-still" [PE] 4.1: OtherInputs(|inputs| inputs.d[2] = NOTHING)
-        => "The displacement of the edge's second endpoint is forgotten" => "dx3 is 0 in the formulas";
+        => "The displacement of the edge's second endpoint is missing" => "dx3 is 0 in the formulas";
     FIRST_DISPLACEMENT_TWICE "first-displacement-twice" [PE] 4.2: OtherInputs(|inputs| inputs.d[2] = inputs.d[1])
         => "The first endpoint's displacement is used for both endpoints" => "dx2 is used instead of dx3";
     SECOND_DISPLACEMENT_TWICE "second-displacement-twice" [PE] 4.2: OtherInputs(|inputs| inputs.d[1] = inputs.d[2])
@@ -91,16 +91,16 @@ named_edits! {
         => "x1 is the position at the end of the step";
     RADII_SQUARED_APART "radii-squared-apart" [PP, PE] 2.6:
         OtherInputs(|inputs| inputs.square = square(inputs.radii[0]) + square(inputs.radii[1]))
-        => "Each radius is squared for itself" => "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
+        => "The radii are squared separately" => "r1^2 + r2^2 is used instead of R^2 = (r1 + r2)^2";
     RADIUS_NOT_SQUARED "radius-not-squared" [PP, PE, PH] 2.7:
         OtherInputs(|inputs| inputs.square = inputs.radii[0] + inputs.radii[1])
         => "The radius, or the sum of the radii, is not squared" => "R is used instead of R^2";
     NO_RADIUS "no-radius" [PP, PE, PH] 2.9: OtherInputs(|inputs| inputs.square = BoundedValue::exact(0.0))
-        => "The radii are forgotten" => "0 is used instead of R^2";
+        => "The radii are missing" => "0 is used instead of R^2";
     FIRST_RADIUS_ONLY "first-radius-only" [PP, PE] 2.75: OtherInputs(|inputs| inputs.square = square(inputs.radii[0]))
-        => "The second object's radius is forgotten" => "r1^2 is used instead of R^2 = (r1 + r2)^2";
+        => "The second object's radius is missing" => "r1^2 is used instead of R^2 = (r1 + r2)^2";
     SECOND_RADIUS_ONLY "second-radius-only" [PP, PE] 2.8: OtherInputs(|inputs| inputs.square = square(inputs.radii[1]))
-        => "The first particle's radius is forgotten" => "r2^2 is used instead of R^2 = (r1 + r2)^2";
+        => "The first particle's radius is missing" => "r2^2 is used instead of R^2 = (r1 + r2)^2";
     FIRST_RADIUS_TWICE "first-radius-twice" [PP, PE] 3.1:
         OtherInputs(|inputs| inputs.square = 4.0 * square(inputs.radii[0]))
         => "The first object's radius is used for both objects" => "(r1 + r1)^2 is used instead of R^2 = (r1 + r2)^2";
@@ -125,17 +125,17 @@ named_edits! {
     })
         => "The half-plane's point and its normal are exchanged" => "p and n are exchanged";
     NO_NORMAL_SQUARE "no-normal-square" [PH] 2.6: OtherInputs(|inputs| inputs.normal_square = BoundedValue::exact(1.0))
-        => "The radius term is right for unit normals only" => "r^2 is used instead of r^2 (n.n)";
+        => "The radius term is right only for unit normals" => "r^2 is used instead of r^2 (n.n)";
     NORMAL_LENGTH "normal-length" [PH] 2.7: OtherInputs(|inputs| inputs.normal_square = root(inputs.normal_square))
         => "The radius term has the length of the normal instead of its square"
         => "r^2 |n| is used instead of r^2 (n.n)";
     REVERSED_OFFSET "reversed-offset" [PH] 4.1: OtherInputs(|inputs| inputs.x.swap(0, 1))
-        => "The vector from the particle to the half-plane is taken the other way round"
+        => "The vector from the particle to the half-plane is reversed"
         => "x - p is used instead of p - x";
     X_ONLY "x-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| without(inputs, |vector| &mut vector.y))
-        => "The second components of all vectors are left out" => "all dot products are x x' without y y'";
+        => "The second components of all vectors are missing" => "all dot products are x x' without y y'";
     Y_ONLY "y-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| without(inputs, |vector| &mut vector.x))
-        => "The first components of all vectors are left out" => "all dot products are y y' without x x'";
+        => "The first components of all vectors are missing" => "all dot products are y y' without x x'";
     CONSTANT_ALPHA "constant-alpha" [PE] 2.5: Formula(Subject::EdgeApproach, constant_alpha)
         => "alpha is treated as constant during the step"
         => "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t";
@@ -149,10 +149,10 @@ named_edits! {
         => "The whole in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared"
         => "1 is used instead of (x32 + t d32).(x32 + t d32)";
     SIGNED_DISTANCE "signed-distance" [PH] 2.5: Formula(Subject::HalfPlaneOverlap, signed_distance)
-        => "The overlap is a signed distance, which is right on one side of the boundary only"
+        => "The overlap is a signed distance, which is right only on one side of the boundary"
         => "the polynomial is -(dx.n) t + r |n| + (p-x).n, a difference of lengths, expected that of squares";
     NO_SPEED_FACTOR "no-speed-factor" [PH] 2.5: Formula(Subject::HalfPlaneApproach, no_speed_factor)
-        => "The approach does not take the side of the half-plane into account: it is right on one side only"
+        => "The approach does not take the side of the half-plane into account: it is right only on one side"
         => "the factor (dx.n) is missing";
     SPEED_ONLY "speed-only" [PH] 2.5: Formula(Subject::HalfPlaneApproach, speed_only)
         => "The approach uses only the velocity, not the side of the half-plane"

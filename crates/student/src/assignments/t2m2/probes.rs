@@ -1,19 +1,19 @@
-//! Probe scenes: small scenes that make every part of a program's work visible.
+//! Probe scenes, which are small scenes that show every part of a program's work.
 //!
-//! Ordinary scenes hide mistakes: edges stand still, normals have length 1, nothing touches at the very end of a step.
-//! A program that is at hand can be run on these instead. Each is about one part of the assignment; independent groups
-//! of bodies are far apart in one scene, so that few runs show much.
+//! Ordinary scenes hide mistakes: edges do not move, normals have length 1, nothing touches at the very end of a step.
+//! A program can be run on the probe scenes instead. Each is about one part of the assignment. Independent groups of
+//! bodies are far apart in one scene, so that few runs show much.
 //!
 //! Starts and displacements of particles are integers or small dyadic fractions, and the step is half a second, in the
-//! large scenes a quarter; in three it is no power of two, which distinguishes velocities from displacements. The first
-//! step's polynomials therefore have coefficients that can be checked by hand. In the `drift` scenes this holds for
-//! every step, because particles that are fixed and move are never pushed from their way (simulation.md 1). Gaps and
-//! displacements of the narrow scenes are half a millionth and about four millionths: any margin that a program adds to
-//! a time or to the approach shows.
+//! large scenes a quarter; in three scenes the step is not a power of two, which distinguishes velocities from
+//! displacements. The first step's polynomials therefore have coefficients that can be checked by hand. In the `drift`
+//! scenes this holds for every step, because moving fixed particles are never diverted (simulation.md 1). Gaps and
+//! displacements of the narrow scenes are half a millionth and about four millionths, so any margin that a program adds
+//! to a time or to the approach shows.
 //!
-//! This runs nothing and never judges. The scenes are the same every time.
-/// Names and texts: polynomials first, then contacts and responses, the impulse rounds, zones. Each is sound for both
-/// readers, and reads back unchanged.
+//! This module runs nothing and never judges. The scenes are the same every time.
+/// Names and texts of the scenes: polynomials first, then contacts and responses, the impulse rounds, and zones. Each
+/// is valid for both readers, and reads back unchanged.
 pub const PROBES: &[(&str, &str)] = &[
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),

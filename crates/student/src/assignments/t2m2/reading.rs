@@ -1,11 +1,11 @@
-//! Ways to write a polynomial down, by name.
+//! Finds the letters of a polynomial's readings by name.
 use super::{
     extras::extras,
     formulas::{Letter, readings},
 };
 use fosssim_findings::explanation::Reading;
 
-/// Returns the letter with this name in messages: one of the formula's own, or a foreign one that may be used there.
+/// Returns the letter with a given name in messages: one of the formula's own, or a foreign one that may be used there.
 #[must_use]
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
     let own = readings(reading.subject).get(reading.number)?.letters.iter();
@@ -18,7 +18,7 @@ mod tests {
     use fosssim_findings::explanation::Subject;
     use fosssim_model::sim::PairKind;
 
-    /// Tests that a name belongs to one letter, so that a message with it is clear.
+    /// Tests that each name belongs to one letter, so that messages are unambiguous.
     #[test]
     fn every_letter_is_found_by_its_name() {
         for subject in PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied() {

@@ -1,8 +1,8 @@
-//! Wrong formulas that are no change of a right one.
+//! Wrong formulas that are not edits of a correct one.
 use super::{Inputs, Subject, formulas::readings, inputs::root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
-/// Returns the approach of the particle and the point of the edge that was closest at the start.
+/// Returns the approach of the particle to the point of the edge that was closest at the start.
 pub(super) fn constant_alpha(inputs: &Inputs) -> Vec<BoundedValue> {
     let (closing, n) = closest_at_start(inputs);
     vec![-closing.dot(closing), closing.dot(n)]
@@ -14,7 +14,7 @@ pub(super) fn overlap_constant_alpha(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-closing.dot(closing), 2.0 * closing.dot(n), inputs.square - n.dot(n)]
 }
 
-/// Returns the approach of the particle and the point of the edge that was closest at the start, and the vector between
+/// Returns the approach of the particle to the point of the edge that was closest at the start, and the vector between
 /// them.
 fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
     let along = inputs.x32();
@@ -22,7 +22,7 @@ fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
     (inputs.d12() - alpha * inputs.d32(), alpha * along - inputs.x12())
 }
 
-/// Returns the overlap whose radii are not multiplied by the edge's squared length.
+/// Returns the overlap without the edge's squared length as a factor of the radii.
 pub(super) fn radius_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
     let quartic = &readings(Subject::EdgeOverlap)[0];
     let mut list = quartic.polynomial(&Inputs { square: BoundedValue::exact(0.0), ..*inputs });
@@ -30,7 +30,7 @@ pub(super) fn radius_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
     list
 }
 
-/// Returns alpha < 1 whose whole is not multiplied by the edge's squared length.
+/// Returns the polynomial alpha < 1 without the edge's squared length as a factor.
 pub(super) fn one_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
     let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
     vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::exact(1.0) - w0.dot(e0)]
@@ -42,13 +42,13 @@ pub(super) fn signed_distance(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-inputs.d[0].dot(n), inputs.radii[0] * root(n.dot(n)) + inputs.x21().dot(n)]
 }
 
-/// Returns the approach to a half-plane without the speed as its factor.
+/// Returns the approach to a half-plane without the speed as a factor.
 pub(super) fn no_speed_factor(inputs: &Inputs) -> Vec<BoundedValue> {
     let n = inputs.normal();
     vec![-inputs.d[0].dot(n), inputs.x21().dot(n)]
 }
 
-/// Returns the speed along the normal.
+/// Returns only the speed along the normal.
 pub(super) fn speed_only(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![inputs.d[0].dot(inputs.normal())]
 }
@@ -65,7 +65,7 @@ pub(super) fn constant_without_speed(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-(speed * speed), inputs.x21().dot(inputs.normal())]
 }
 
-/// Returns the negative speed along the normal.
+/// Returns only the negative speed along the normal.
 pub(super) fn closing_only(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-inputs.d[0].dot(inputs.normal())]
 }

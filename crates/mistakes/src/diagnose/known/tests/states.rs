@@ -3,8 +3,8 @@
 use crate::diagnose::{
     Explanation, explain,
     known::{
+        applicable_rows::{applicable, is_of_states},
         find_known,
-        shown::{applicable, is_of_states},
     },
 };
 use fosssim_model::{

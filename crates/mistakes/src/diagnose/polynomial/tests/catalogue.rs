@@ -6,7 +6,7 @@ use fosssim_model::{
     sim::{Pair, PairMotion, PointMotion},
 };
 use fosssim_num::vector::{Vec2, at};
-use fosssim_student::{Area, CATALOGUE, KNOWN_ACCUSED, Object, Row, RowKind, StepLog, Student, World, find, step};
+use fosssim_student::{Area, CATALOGUE, FALSE_POSITIVES, Object, Row, RowKind, StepLog, Student, World, find, step};
 
 /// The style of the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,7 +55,7 @@ fn scene(numbers: &mut Numbers, style: Style) -> Scene {
 }
 
 /// The number of polynomials that a student hands over for a pair.
-fn handed_over(row: &Row, kind: PairKind) -> usize {
+fn passed_on(row: &Row, kind: PairKind) -> usize {
     match row.id {
         "handover-position-only" => kind.polynomials() - 1,
         "handover-approach-only" => 1,
@@ -104,7 +104,7 @@ fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
                 pass: 0,
                 pair: Pair { kind, first: one as u32, second: second as u32 },
                 motion,
-                polynomials: lists.by_ref().take(handed_over(row, kind)).collect(),
+                polynomials: lists.by_ref().take(passed_on(row, kind)).collect(),
             });
         }
     }
@@ -123,7 +123,7 @@ const ACCUSED_IF_ASKED: [&str; 4] =
 
 #[test]
 fn correct_variants_are_not_accused() {
-    let is_known = |id: &str| KNOWN_ACCUSED.contains(&id) || ACCUSED_IF_ASKED.contains(&id);
+    let is_known = |id: &str| FALSE_POSITIVES.contains(&id) || ACCUSED_IF_ASKED.contains(&id);
     for style in [Style::General, Style::Slow, Style::Plain] {
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant && !is_known(row.id)) {
             assert_eq!(explain(&first_passes(row, style)), [], "{} {style:?}", row.id);

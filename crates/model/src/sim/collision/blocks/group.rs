@@ -1,5 +1,5 @@
-//! The pairs of some particles in a row, one per lane, with every edge and every half-plane, and of one particle with
-//! some others or some edges: coefficients, and the results of the certificate's closed forms for them.
+//! The pairs of several consecutive particles, one per lane, with every edge and every half-plane, and of one particle
+//! with several others or several edges: coefficients, and the results of the certificate's closed forms.
 use super::{
     super::{
         particle_edge::{self, EdgePolynomials},
@@ -17,61 +17,63 @@ use std::ops::Range;
 
 crate::drops_leading!();
 
-/// Numbers of a pair with an edge: its coefficients, the known facts ([`OPEN`]), and room.
+/// The numbers per pair with an edge: its coefficients, the known facts ([`OPEN`]), and padding.
 pub(super) const EDGE_ROW: usize = 20;
 
-/// The place of the facts about it.
+/// The index of the facts in the row.
 pub(super) const EDGE_KNOWN: usize = 17;
 
-/// Numbers of a pair of particles, or with a half-plane: the parabola's coefficients, the known facts, the line's
-/// coefficients, and room. A polynomial is read soon after it is stored, which is fast if both are done together.
+/// The numbers per pair of particles or pair with a half-plane: the parabola's coefficients, the known facts, the
+/// line's coefficients, and padding. A polynomial is read soon after it is stored, which is fast if both access it in
+/// the same pieces.
 pub(super) const TWO_ROW: usize = 8;
 
-/// The place of the facts about it.
+/// The index of the facts in the row.
 pub(super) const TWO_KNOWN: usize = 3;
 
-/// The place where the line begins.
+/// The index at which the line begins.
 pub(super) const LINE: usize = 4;
 
-/// Numbers behind a row that may be read, too, whatever their values: as many as a polynomial has coefficients, and two
-/// more.
+/// The numbers after a row that may be read, whatever their values: the number of coefficients of a polynomial, plus
+/// two.
 pub(super) const BEHIND: usize = 8;
 
-/// Facts about a pair, in the bits of a number. The lowest bit is this if the certificate must decide whether there is
-/// an impact; the next ones mark coefficients that are so small that they are dropped when they lead; the highest ones
+/// The facts about a pair, in the bits of a number. The lowest bit is set if the certificate must decide whether there
+/// is an impact. The next bits mark coefficients that are small enough to be dropped when they lead; the highest bits
 /// are unused.
 pub(super) const OPEN: u64 = 1;
 
-/// The lowest bits of this number plus a sum of small powers of two are that sum.
+/// A number whose lowest bits, after a sum of small powers of two is added, are that sum.
 const NOTHING: f64 = (1_u64 << 52) as f64;
 
-/// The pairs of a group of particles with edges and half-planes: rows of numbers.
+/// The pairs of a group of particles with edges and half-planes, as rows of numbers.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Group {
-    /// The particles.
+    /// The group's particles.
     pub particles: Range<usize>,
-    /// The pairs with edges, edge by edge, and for each of these particle by particle; and room for the edges that
-    /// lanes may reach behind the last one.
+    /// The pairs with edges, edge by edge, and for each edge particle by particle, with room for the lanes that reach
+    /// beyond the last edge.
     pub edges: Vec<f64>,
-    /// The pairs with half-planes, likewise.
+    /// The pairs with half-planes, in the same order.
     pub half_planes: Vec<f64>,
-    /// No coefficient has a larger modulus.
+    /// The largest modulus of a coefficient.
     pub largest: f64,
-    /// Bit by bit, the particles that a response has moved since their pairs were computed.
+    /// A bit mask of the particles that a response has moved since their pairs were computed.
     moved: u32,
-    /// Whether a response has moved an edge in this pass: another would spoil the results of other particles.
+    /// Whether a response has moved an edge in this pass; a second response would invalidate the results of other
+    /// particles.
     has_moved_edges: bool,
 }
 
 impl Group {
-    /// Forgets all pairs, at the start of a pass.
+    /// Removes all pairs, at the start of a pass.
     pub fn clear(&mut self) {
         self.particles = 0..0;
         self.has_moved_edges = false;
     }
 
-    /// Forgets the pairs that depend on a particle which a response has moved: all of them if it is the end of an edge.
-    pub fn spoil(&mut self, particle: usize, is_end: bool) {
+    /// Removes the pairs that depend on a particle that a response has moved; all pairs if it is the end of an edge.
+    pub fn invalidate(&mut self, particle: usize, is_end: bool) {
         if is_end {
             self.particles = 0..0;
             self.has_moved_edges = true;
@@ -80,9 +82,9 @@ impl Group {
         }
     }
 
-    /// Makes sure that the pairs of a particle with half-planes and with edges from `edge` on are computed.
+    /// Ensures that the pairs of a particle with half-planes, and with edges from `edge` on, are computed.
     #[inline(always)]
-    pub fn provide<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
+    pub fn ensure_computed<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
         let width = Lanes::<S>::COUNT;
         let edges = bodies.edges.len();
         let mut largest = Lanes::all(simd, 0.0);
@@ -111,7 +113,7 @@ impl Group {
         self.largest = self.with_half_planes(simd, lists, bodies, largest).largest();
     }
 
-    /// Computes the pairs of all particles with one edge. Gives the largest moduli so far.
+    /// Computes the pairs of all particles with one edge. Returns the largest moduli so far.
     #[inline(always)]
     fn with_edge<S: Simd>(
         &mut self,
@@ -128,7 +130,7 @@ impl Group {
         store_edges(simd, &pair, EDGE_ROW, &mut self.edges[begin..], largest)
     }
 
-    /// Detects one of the particles with some edges.
+    /// Computes the pairs of one particle with several edges.
     #[inline(always)]
     fn with_edges<S: Simd>(
         &mut self,
@@ -152,7 +154,7 @@ impl Group {
         largest
     }
 
-    /// Detects all particles with all half-planes.
+    /// Computes the pairs of all particles with all half-planes.
     #[inline(always)]
     fn with_half_planes<S: Simd>(
         &mut self,
@@ -179,7 +181,7 @@ fn all<S: Simd>(simd: S, vector: Vec2) -> Plane<Lanes<S>> {
     Plane { x: Lanes::all(simd, vector.x), y: Lanes::all(simd, vector.y) }
 }
 
-/// Computes the pairs of a particle with the particles from `second` on; gives the largest moduli so far.
+/// Computes the pairs of a particle with the particles from `second` on. Returns the largest moduli so far.
 #[inline(always)]
 pub(super) fn compute_particles<S: Simd>(
     simd: S,
@@ -194,8 +196,8 @@ pub(super) fn compute_particles<S: Simd>(
     store(simd, overlap, approach, rows, largest)
 }
 
-/// Applies the certificate to pairs with edges, and stores everything; the rows of two lanes are `stride` apart.
-/// Returns the largest moduli so far.
+/// Applies the certificate to pairs with edges, and stores the rows, which are `stride` apart for two lanes. Returns
+/// the largest moduli so far.
 #[inline(always)]
 fn store_edges<S: Simd>(
     simd: S,
@@ -207,7 +209,7 @@ fn store_edges<S: Simd>(
     let EdgePolynomials { distance, beyond_first, before_second, approach } = *pair;
     let ([o0, o1, o2, o3, o4], [a0, a1, a2, a3, a4, a5]) = (distance, approach);
     let ([f0, f1, f2], [s0, s1, s2]) = (beyond_first, before_second);
-    // Code that needs all of them comes before code with branches, across which few numbers stay in registers.
+    // Code that needs all numbers precedes code with branches, across which few numbers stay in registers.
     let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
     let small = small(simd, &all);
     for lanes in &all {
@@ -221,7 +223,7 @@ fn store_edges<S: Simd>(
     largest
 }
 
-/// Applies the certificate to a parabola and a line, and stores everything.
+/// Applies the certificate to a parabola and a line, and stores the rows.
 #[inline(always)]
 fn store<S: Simd>(
     simd: S,
@@ -241,7 +243,7 @@ fn store<S: Simd>(
     largest
 }
 
-/// Returns which coefficients are small: see [`OPEN`].
+/// Returns the bits of small coefficients; see [`OPEN`].
 #[inline(always)]
 fn small<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
     let mut known = Lanes::all(simd, NOTHING);

@@ -1,41 +1,41 @@
-//! The numbers of a pass: one list per number of all particles, for lanes to be loaded from.
+//! The numbers of a pass: one list per quantity of all particles, from which lanes are loaded.
 use super::{super::particle_edge::EdgeMotions, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
-    lanes::{Lanes, MOST_LANES, Plane, Simd},
-    tolerances::LANES_LARGEST_INPUT,
+    lanes::{Lanes, MAX_LANES, Plane, Simd},
+    tolerances::LANES_MAX_INPUT,
     vector::{Vec2, at},
 };
 
 /// The lists of a pass.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lists {
-    /// Positions at the start of the step (x, y), displacements (x, y) and radii of particles, with as many entries
-    /// behind the last one as lanes may reach; these repeat it.
+    /// The start positions (x, y), displacements (x, y) and radii of particles. The last entry is repeated as often as
+    /// lanes may reach beyond the end.
     particles: [Vec<f64>; 5],
-    /// The edges' coordinates: starts and displacements of their first and second ends, and radii.
+    /// The edges' coordinates: starts and displacements of first and second ends, and radii.
     edges: [Vec<f64>; 9],
-    /// Whether these are filled in this pass; they are needed only after a response has moved bodies.
+    /// Whether the edges' lists are filled in this pass; they are needed only after a response has moved bodies.
     has_edges: bool,
-    /// The squared lengths of half-planes' normals.
+    /// The squared lengths of the half-planes' normals.
     pub squares: Vec<f64>,
-    /// For each particle the edges that end in it, ascending.
+    /// The edges that end in each particle, ascending.
     own_edges: Vec<Vec<usize>>,
-    /// Whether what does not change is moderate.
+    /// Whether the constants are moderate.
     has_moderate_constants: bool,
 }
 
 /// The effect of a response on the lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum RefreshedBody {
-    /// The particle ends where it ended before, to the last bit.
+    /// The particle's end position is the same, bit for bit.
     Same,
-    /// The particle ends elsewhere.
+    /// The particle's end position has changed.
     Moved {
-        /// An edge ends in it.
+        /// Whether an edge ends in the particle.
         is_end: bool,
     },
-    /// The displacement is too large for lanes, or no number.
+    /// The displacement is too large for lanes, or NaN.
     TooLarge,
 }
 
@@ -43,10 +43,10 @@ pub(super) enum RefreshedBody {
 type Five<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
 
 impl Lists {
-    /// Fills all lists; false if an input is too large or no number.
+    /// Fills all lists. Returns false if an input is too large or NaN.
     pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
         let Setting { bodies, q_start, displacements, .. } = setting;
-        // Even an empty list has entries behind its end.
+        // Even an empty list has padding after its end.
         if self.particles[4].is_empty() {
             self.fill_constants(bodies);
         }
@@ -62,7 +62,7 @@ impl Lists {
         self.has_moderate_constants && are_moderate(q_start) && are_moderate(displacements)
     }
 
-    /// Takes over the displacement of a particle.
+    /// Copies the current displacement of a particle.
     pub fn refresh(&mut self, setting: Setting<'_>, particle: usize) -> RefreshedBody {
         let Setting { bodies, displacements, .. } = setting;
         let shift = at(displacements, particle);
@@ -101,15 +101,15 @@ impl Lists {
         self.own_edges = vec![Vec::new(); count];
         for (edge, ends) in bodies.edges.iter().enumerate() {
             for &end in ends {
-                // An edge may end twice in one particle.
+                // Both ends of an edge may be the same particle.
                 if self.own_edges[end].last() != Some(&edge) {
                     self.own_edges[end].push(edge);
                 }
             }
         }
-        self.particles = std::array::from_fn(|_| vec![0.0; count + MOST_LANES]);
+        self.particles = std::array::from_fn(|_| vec![0.0; count + MAX_LANES]);
         self.particles[4][..count].copy_from_slice(&bodies.radii);
-        self.edges = std::array::from_fn(|_| vec![0.0; edges + MOST_LANES]);
+        self.edges = std::array::from_fn(|_| vec![0.0; edges + MAX_LANES]);
         self.edges[8][..edges].copy_from_slice(&bodies.edge_radii);
         self.squares = bodies.normals.iter().map(|normal| normal.dot(normal)).collect();
         let vectors = bodies.points.iter().chain(&bodies.normals);
@@ -118,7 +118,7 @@ impl Lists {
             && vectors.into_iter().all(|vector: &Vec2| are_moderate(&[vector.x, vector.y]));
     }
 
-    /// Edges that end in a particle, from number `from` on.
+    /// Returns the edges that end in a particle, from number `from` on.
     #[inline]
     pub fn own_edges(&self, particle: usize, from: usize) -> &[usize] {
         let own = &self.own_edges[particle];
@@ -141,7 +141,7 @@ impl Lists {
         (plane(simd, x, y, first), plane(simd, dx, dy, first), Lanes::load(simd, &radius[first..]))
     }
 
-    /// Motions and radii of the edges from `first` on.
+    /// Returns the motions and radii of the edges from `first` on.
     #[inline(always)]
     pub fn edges<S: Simd>(&self, simd: S, first: usize) -> (EdgeMotions<Lanes<S>>, Lanes<S>) {
         let [x2, y2, dx2, dy2, x3, y3, dx3, dy3, radius] = &self.edges;
@@ -150,7 +150,7 @@ impl Lists {
         (EdgeMotions::new(x2, d2, x3, d3), Lanes::load(simd, &radius[first..]))
     }
 
-    /// Returns the motion of an edge with these ends, in all lanes.
+    /// Returns the motion of the edge with two given ends, in all lanes.
     #[inline(always)]
     pub fn edge<S: Simd>(&self, simd: S, [first, second]: [usize; 2]) -> EdgeMotions<Lanes<S>> {
         let ((x2, d2, _), (x3, d3, _)) = (self.particle(simd, first), self.particle(simd, second));
@@ -158,13 +158,13 @@ impl Lists {
     }
 }
 
-/// Returns the vectors from `first` on, of lists of their components.
+/// Returns the vectors from `first` on, from the lists of their components.
 #[inline(always)]
 fn plane<S: Simd>(simd: S, x: &[f64], y: &[f64], first: usize) -> Plane<Lanes<S>> {
     Plane { x: Lanes::load(simd, &x[first..]), y: Lanes::load(simd, &y[first..]) }
 }
 
-/// Fills the places behind the first `count` entries with the last entry.
+/// Fills the entries after the first `count` with the last of them.
 fn repeat_last(lists: &mut [Vec<f64>], count: usize) {
     for list in lists {
         if let [.., last] = list[..count] {
@@ -173,7 +173,7 @@ fn repeat_last(lists: &mut [Vec<f64>], count: usize) {
     }
 }
 
-/// Puts a vector into entry `index` of two lists with `count` entries; the last entry is repeated behind them.
+/// Writes a vector into entry `index` of two lists with `count` entries; the last entry is repeated after them.
 fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
     for (list, value) in lists.iter_mut().zip([vector.x, vector.y]) {
         let end = if index + 1 == count { list.len() } else { index + 1 };
@@ -181,7 +181,7 @@ fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
     }
 }
 
-/// Returns whether all are numbers that are not too large.
+/// Returns whether all numbers are finite and not too large.
 fn are_moderate(numbers: &[f64]) -> bool {
-    numbers.iter().fold(true, |all, number| all & (number.abs() <= LANES_LARGEST_INPUT))
+    numbers.iter().fold(true, |all, number| all & (number.abs() <= LANES_MAX_INPUT))
 }

@@ -1,11 +1,11 @@
-//! A detection pass whose polynomials only have to be logged: several pairs of one kind at a time, in lanes.
+//! A detection pass whose polynomials are only logged: several pairs of one kind at a time, in lanes.
 //!
 //! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number;
-//! polynomials, decisions and counts are therefore those of [`super::pass`] bit for bit, however pairs are put
-//! together. Where inputs are so large that a NaN could arise, or are one, there are no blocks.
+//! Polynomials, decisions and counts are therefore identical to those of [`super::pass`], whatever the grouping. If
+//! inputs are NaN, or so large that a NaN could result, no blocks are used.
 //!
-//! `lists` holds what lanes are loaded from, `group` computes blocks of pairs, `rows` goes through them in the order of
-//! the trace, `settle` decides about single ones and writes them.
+//! `lists` holds the numbers from which lanes are loaded, `group` computes blocks of pairs, `rows` visits them in the
+//! order of the trace, and `settle` decides single pairs and writes their polynomials.
 mod group;
 mod lists;
 mod rows;
@@ -23,29 +23,29 @@ use rows::Pairs;
 /// The inputs of a pass.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Setting<'a> {
-    /// The scene's constants.
+    /// The constants of the scene.
     pub bodies: &'a Bodies,
-    /// Number of the step, from 1.
+    /// The number of the step, from 1.
     pub step: u32,
-    /// Positions at the start of the step.
+    /// The positions at the start of the step.
     pub q_start: &'a [f64],
-    /// Displacements within the step, after the responses so far.
+    /// The displacements within the step, after the responses so far.
     pub displacements: &'a [f64],
 }
 
-/// Processes the pairs of passes; keeps its memory.
+/// Processes the pairs of passes, and reuses its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Blocks {
-    /// The instructions that suit the scene, once it is known.
+    /// The instructions for the scene, once they are chosen.
     instructions: Option<Instructions>,
-    /// Steps of the scene.
+    /// The number of steps of the scene.
     steps: u32,
     lists: Lists,
     group: Group,
 }
 
 impl Blocks {
-    /// Creates the blocks for a scene with this many steps.
+    /// Creates the blocks for a scene with `steps` steps.
     pub fn new(steps: u32) -> Self {
         Self { steps, ..Self::default() }
     }
@@ -56,20 +56,20 @@ impl Blocks {
         self.lists.prepare(setting)
     }
 
-    /// Takes over the displacements of these particles. Returns false if the rest has to be computed one by one.
+    /// Copies the displacements of `moved`. Returns false if the remaining pairs must be computed one by one.
     pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
-        // Fixed particles stay, and so do all results about them.
+        // Fixed particles do not move, so all results about them are kept.
         moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
             RefreshedBody::Same => true,
             RefreshedBody::Moved { is_end } => {
-                self.group.spoil(particle, is_end);
+                self.group.invalidate(particle, is_end);
                 true
             }
             RefreshedBody::TooLarge => false,
         })
     }
 
-    /// Advances to the next hit and past it; to the end if there is none. Polynomials are appended to `bytes`.
+    /// Advances past the next hit, or to the end if there is none. Polynomials are appended to `bytes`.
     ///
     /// # Errors
     /// [`StepError::RootSearch`]

@@ -12,10 +12,10 @@ use crate::sim::{
     search::SearchCounts,
     step_error::StepError,
 };
-use fosssim_num::lanes::{Lanes, MOST_LANES, Simd, Work};
+use fosssim_num::lanes::{Lanes, MAX_LANES, Simd, Work};
 use std::ops::Range;
 
-/// The pairs from a place on, up to the next hit.
+/// The pairs from a position on, up to the next hit.
 pub(super) struct Pairs<'a> {
     pub lists: &'a Lists,
     pub group: &'a mut Group,
@@ -25,8 +25,8 @@ pub(super) struct Pairs<'a> {
     pub bytes: Option<&'a mut PolynomialBytes>,
 }
 
-/// Room for the rows of a block of particles.
-type Rows = [f64; TWO_ROW * MOST_LANES];
+/// Memory for the rows of a block of particles.
+type Rows = [f64; TWO_ROW * MAX_LANES];
 
 impl Work for Pairs<'_> {
     type Output = Result<Option<Impulse>, StepError>;
@@ -35,7 +35,7 @@ impl Work for Pairs<'_> {
     fn run<S: Simd>(mut self, simd: S) -> Self::Output {
         let bodies = self.setting.bodies;
         let particles = bodies.particles();
-        let mut rows = [0.0; TWO_ROW * MOST_LANES];
+        let mut rows = [0.0; TWO_ROW * MAX_LANES];
         while self.place.first < particles {
             let first = self.place.first;
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
@@ -61,8 +61,8 @@ impl Work for Pairs<'_> {
 }
 
 impl Pairs<'_> {
-    /// Computes the rest of the pairs of one particle. Whether something was found, which the output holds; at a hit
-    /// the place is the next pair's.
+    /// Computes the rest of the pairs of one particle. Returns whether the output holds a result; after a hit the
+    /// position is that of the next pair.
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
         let first = self.place.first;
@@ -73,11 +73,11 @@ impl Pairs<'_> {
         if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
-        self.group.provide(simd, self.lists, self.setting.bodies, first, edges.start);
+        self.group.ensure_computed(simd, self.lists, self.setting.bodies, first, edges.start);
         self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
     }
 
-    /// Decides about a particle and those of these edges of which it is no end.
+    /// Decides the pairs of a particle with the edges `seconds`, except those that end in it.
     #[inline(always)]
     fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
@@ -99,7 +99,7 @@ impl Pairs<'_> {
         false
     }
 
-    /// Decides about a particle and these half-planes.
+    /// Decides the pairs of a particle with the half-planes `seconds`.
     #[inline(always)]
     fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
         let width = Lanes::<S>::COUNT;
@@ -114,7 +114,7 @@ impl Pairs<'_> {
         false
     }
 
-    /// Decides about a particle and these particles.
+    /// Decides the pairs of a particle with the particles `seconds`.
     #[inline(always)]
     fn particles<S: Simd>(
         &mut self,
@@ -144,8 +144,8 @@ impl Pairs<'_> {
     }
 }
 
-/// Decides about a pair with an edge, where that is open, and writes its polynomials. Whether something was found,
-/// which the output holds.
+/// Decides a pair with an edge, if the certificate left it open, and writes its polynomials. Returns whether the output
+/// holds a result.
 #[inline(always)]
 fn compute_edge(
     pair: Pair,
@@ -155,7 +155,7 @@ fn compute_edge(
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
+    let ends = known & OPEN != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
     if known & OPEN == 0 {
         output.excluded += 1;
     }
@@ -163,7 +163,8 @@ fn compute_edge(
     ends
 }
 
-/// Decides about a pair of particles, or with a half-plane.
+/// Decides a particle-particle or particle-half-plane pair and writes its polynomials. Returns whether the output holds
+/// a result.
 #[inline(always)]
 fn compute_two(
     pair: Pair,
@@ -173,7 +174,7 @@ fn compute_two(
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[TWO_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.asks(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
+    let ends = known & OPEN != 0 && output.decide(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
     if known & OPEN == 0 {
         output.excluded += 1;
     }

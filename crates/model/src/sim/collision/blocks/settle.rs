@@ -1,4 +1,4 @@
-//! Decides about single pairs whose coefficients are known, and writes their polynomials.
+//! Decides single pairs with known coefficients, and writes their polynomials.
 use super::{
     super::{impact::time_of_impact, motion::PairMotion},
     Setting,
@@ -15,36 +15,36 @@ use fosssim_num::{lanes::copy_little_endian, polynomial::Polynomial};
 
 crate::drops_leading!();
 
-/// The bytes of a pair with an edge, and of another pair, if nothing is dropped.
+/// The maximum number of bytes of a pair with an edge, and of another pair.
 pub(super) const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
 pub(super) const TWO_BYTES: usize = 2 * 4 + 8 * 5;
 
-/// The place of polynomials, and the number of those that are there.
+/// The buffer for polynomials, and the number written so far.
 pub(super) struct LoggedRows<'a> {
-    /// Room for all of them; empty if they are not wanted.
+    /// Memory for all polynomials; empty if they are not needed.
     pub room: &'a mut [u8],
-    /// Bytes that are written.
+    /// The number of bytes written.
     pub used: usize,
-    /// Polynomials that are written.
+    /// The number of polynomials written.
     pub polynomials: usize,
-    /// Pairs of which the certificate's closed forms have excluded an impact.
+    /// The number of pairs for which the certificate's closed forms have excluded an impact.
     pub excluded: u64,
-    /// The largest modulus of coefficients.
+    /// The largest modulus of a coefficient.
     pub largest: f64,
-    /// The hit that was found, or why the search has no end. Handed on here, since it is seldom there and large.
+    /// The hit that was found, or the reason why the search has no end. It is stored here because it is rare and large.
     pub found: Result<Option<Impulse>, StepError>,
 }
 
 impl<'a> LoggedRows<'a> {
-    /// Creates the state in which nothing is written yet.
+    /// Creates the state before anything is written.
     #[inline(always)]
     pub fn new(room: &'a mut [u8]) -> Self {
         Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
     }
 
-    /// Decides about a pair, and returns whether that yields something, as [`LoggedRows::takes`] does.
+    /// Decides a pair. Returns whether there is a result, like [`LoggedRows::record_result`].
     #[inline(always)]
-    pub fn asks(
+    pub fn decide(
         &mut self,
         counts: &mut SearchCounts,
         decide: impl FnOnce(&mut SearchCounts) -> Result<Option<Impulse>, StepError>,
@@ -52,13 +52,13 @@ impl<'a> LoggedRows<'a> {
         place: &mut PassCursor,
     ) -> bool {
         let found = decide(counts);
-        self.takes(found, pair, place)
+        self.record_result(found, pair, place)
     }
 
-    /// Takes the result of a pair. Returns whether it is a hit, after which the place is then, or an endless search,
-    /// which is not logged.
+    /// Stores the result of a pair. Returns whether it is a hit, after which the position follows it, or an endless
+    /// search, which is not logged.
     #[inline(always)]
-    fn takes(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
+    fn record_result(&mut self, found: Result<Option<Impulse>, StepError>, pair: Pair, place: &mut PassCursor) -> bool {
         if matches!(found, Ok(None)) {
             return false;
         }
@@ -84,7 +84,7 @@ impl<'a> LoggedRows<'a> {
         self.polynomials += 4;
     }
 
-    /// Writes the polynomials of a pair of a kind with two.
+    /// Writes the polynomials of a pair with two polynomials.
     #[inline(always)]
     pub fn write_two(&mut self, row: &[f64; TWO_ROW], small: u64) {
         let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<TWO_BYTES>) else { return };
@@ -96,11 +96,11 @@ impl<'a> LoggedRows<'a> {
     }
 }
 
-/// Writes a polynomial whose coefficients are at the front: always the greatest possible number, of which fewer may
+/// Writes a polynomial whose coefficients are at the front. The maximum number is always written, of which fewer may
 /// count.
 #[inline(always)]
 fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
-    // Small coefficients in a row, at most all of them.
+    // The number of consecutive small coefficients, at most all of them.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
     let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
     let Some((size, places)) = room.get_mut(*used..).and_then(<[u8]>::split_first_chunk_mut::<4>) else { return };
@@ -123,7 +123,7 @@ pub(super) fn decide_edge(
     decide(setting, counts, pair, row, [5, 3, 3, 6])
 }
 
-/// Decides about another pair.
+/// Decides another pair.
 #[inline(never)]
 pub(super) fn decide_two(
     setting: &Setting<'_>,
@@ -135,7 +135,7 @@ pub(super) fn decide_two(
     decide(setting, counts, pair, &[a, b, c, d, e], [3, 2])
 }
 
-/// Decides about polynomials of these lengths, small leading coefficients included.
+/// Decides polynomials of the given lengths, small leading coefficients included.
 #[inline(always)]
 fn decide<const COUNT: usize>(
     setting: &Setting<'_>,

@@ -38,7 +38,7 @@ impl Observer for Log {
 /// Steps a scene both ways and compares everything that comes of it. Gives the number of pairs.
 fn compare(scene: &Scene) -> u64 {
     let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::WhereNeeded));
-    single.forgo_lanes();
+    single.disable_lanes();
     let [mut quick, mut slow] = [(); 2].map(|()| Log::default());
     for _ in 0..scene.steps() {
         let results = [lanes.step(&mut quick), single.step(&mut slow)];

@@ -1,6 +1,6 @@
 //! A particle and an edge: detection and responses (collisions.md 2, 3, 6).
 //!
-//! End caps are not handled: the particles at the ends are expected to be at least as thick as the edge.
+//! End caps are not handled. The particles at the ends should be at least as thick as the edge.
 mod polynomials;
 
 use super::response::{Change, Response, Setting, clamp};
@@ -8,8 +8,8 @@ use crate::sim::bodies::Bodies;
 use fosssim_num::vector::{Vec2, at, length, unit};
 pub use polynomials::{EdgeMotions, EdgePolynomials, coefficients, coefficients_and_right_cubic};
 
-/// Returns the contact normal at time `t`: from the particle to the closest point of the edge's line. `None` when it is
-/// zero, which is no hit; a NaN is one.
+/// Returns the contact normal at time `t`, from the particle to the closest point of the edge's line. `None` (no hit)
+/// if it is zero; a NaN normal counts as a hit.
 #[inline]
 pub(super) fn normal([x1, x2, x3]: [Vec2; 3], [d1, d2, d3]: [Vec2; 3], t: f64) -> Option<Vec2> {
     let a = ((x1 + t * d1) - x2) - t * d2;
@@ -34,7 +34,8 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize;
     exchange(bodies, law.factor, law.time_step, [i, first, second], alpha, on_edge - v1, unit(n))
 }
 
-/// Returns the simple detection: the vector to the nearest point of the edge when the disc overlaps it and approaches.
+/// Returns the simple detection: the vector to the nearest point of the edge, if the disc overlaps the edge and
+/// approaches it.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usize) -> Option<Vec2> {
     let [first, second] = bodies.edges[edge];
@@ -136,7 +137,7 @@ mod tests {
         assert_eq!(overlap(&bodies, &[3.0, 0.2, -1.0, 0.0, 1.0, 0.0], &down, 0, 0), None, "beyond the end");
     }
 
-    /// An impact keeps the momentum, and with restitution 1 turns the relative speed at the contact round.
+    /// An impact conserves momentum, and with restitution 1 reverses the relative speed at the contact.
     #[test]
     fn impacts_conserve_momentum() {
         let mut numbers = Numbers(11);

@@ -1,12 +1,11 @@
-//! The detection polynomials of particle-edge pairs (collisions.md 2), of one pair or of several at a time.
+//! The detection polynomials of particle-edge pairs (collisions.md 2), for one pair or several at a time.
 use fosssim_num::lanes::{Number, Plane};
 use std::ops::Mul;
 
-/// The values that the polynomials of edges with every particle share: their motion, and the products that hold no
-/// particle.
+/// The values that an edge's polynomials with all particles share: its motion, and the products without a particle.
 ///
-/// Every value is computed by the operations that the formulas prescribe, so it does not matter how often it is used.
-/// `x23` is computed and not taken as `-x32`: where they vanish their zeros have the same sign.
+/// Every value is computed by the operations that the formulas prescribe, so it can be shared. `x23` is computed
+/// instead of `-x32`, because zero components of both have the same sign.
 #[derive(Debug, Clone, Copy)]
 pub struct EdgeMotions<N> {
     x2: Plane<N>,
@@ -17,11 +16,11 @@ pub struct EdgeMotions<N> {
     d32: Plane<N>,
     x23: Plane<N>,
     d23: Plane<N>,
-    /// `dot(x32, x32)`
+    /// The product `dot(x32, x32)`.
     g: N,
-    /// `dot(d32, x32)`
+    /// The product `dot(d32, x32)`.
     h: N,
-    /// `dot(d32, d32)`
+    /// The product `dot(d32, d32)`.
     i: N,
 }
 
@@ -38,21 +37,21 @@ impl<N: Number> EdgeMotions<N> {
 /// The coefficients of particle-edge pairs before small leading coefficients are dropped, highest power first.
 #[derive(Debug, Clone, Copy)]
 pub struct EdgePolynomials<N> {
-    /// "Closer than the radii to the line".
+    /// The polynomial "closer to the line than the radii".
     pub distance: [N; 5],
-    /// "Beyond the first end".
+    /// The polynomial "beyond the first end".
     pub beyond_first: [N; 3],
-    /// "Before the second end".
+    /// The polynomial "before the second end".
     pub before_second: [N; 3],
-    /// "Approaching".
+    /// The polynomial "approaching".
     pub approach: [N; 6],
 }
 
-/// Returns the coefficients for each of several edges with a disc that starts at `x1` and moves by `d1` in the step,
-/// and whose radius and the edge's add up to `radii`. Letters are those of collisions.md 2.
+/// Returns the coefficients for several edges and one disc. The disc starts at `x1` and moves by `d1` in the step;
+/// `radii` is the sum of the disc's and the edge's radius. Letters are those of collisions.md 2.
 ///
-/// The t^3 coefficient of the last one is mathematically wrong (it has `g` instead of `h`); it is the formula that
-/// every student was given.
+/// The t³ coefficient of the last polynomial is mathematically wrong (it has `g` instead of `h`), but this is the
+/// formula that every student was given.
 #[inline(always)]
 pub fn coefficients<N: Number>(x1: Plane<N>, d1: Plane<N>, edges: &EdgeMotions<N>, radii: N) -> EdgePolynomials<N>
 where
@@ -61,7 +60,7 @@ where
     coefficients_and_right_cubic(x1, d1, edges, radii).0
 }
 
-/// Returns the [`coefficients`], and the definition's t^3 coefficient of the last polynomial (numerics.md 1.1).
+/// Returns the [`coefficients`], and the t³ coefficient of the last polynomial by the definition (numerics.md 1.1).
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
 pub fn coefficients_and_right_cubic<N: Number>(
@@ -92,13 +91,13 @@ where
         a * a - d * g + s * g,
     ];
     let before_second = [d13.dot(d23), d13.dot(x23) + x13.dot(d23), x13.dot(x23)];
-    // Products are commutative bit for bit, so `dot(x32, d32)` is `h` from above.
+    // Products are commutative bit for bit, so `dot(x32, d32)` is `h`.
     let (approach, right_cubic) = approach([g, h, i, f, e, a, b, c], d32.dot(x21) + d21.dot(x32), d32.dot(d21));
     (EdgePolynomials { distance, beyond_first: [c, b, a], before_second, approach }, right_cubic)
 }
 
-/// Returns the coefficients of the velocity quintic, with its own letters `a..h`, `i`, `j`; and the right coefficient
-/// of t^3.
+/// Returns the coefficients of the velocity quintic as given to students, and the corrected coefficient of t³. The
+/// letters `a..h`, `i`, `j` are the quintic's own.
 #[inline(always)]
 #[expect(clippy::many_single_char_names, reason = "the letters of the specification")]
 fn approach<N: Number>([a, b, c, d, e, f, g, h]: [N; 8], i: N, j: N) -> ([N; 6], N)
@@ -131,7 +130,7 @@ where
     (quintic, less(-2.0 * g * h * p - 2.0 * f * h * q, others))
 }
 
-/// Returns a number less others, one after the other.
+/// Subtracts `others` from a number, one after the other.
 #[inline(always)]
 fn less<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]) -> N {
     for other in others {
@@ -157,7 +156,7 @@ mod tests {
         lists.map(Polynomial::trimmed)
     }
 
-    /// Returns the approach polynomial by the formulas of the specification, from differences of positions and
+    /// Returns the approach polynomial by the specification's formulas, from differences of positions and
     /// displacements.
     fn approach_by_the_formulas([x12, x32, x21]: [Vec2; 3], [d12, d32, d21]: [Vec2; 3]) -> [f64; 6] {
         let a = x32.dot(&x32);
@@ -205,7 +204,7 @@ mod tests {
         terms.map(|terms| terms[1..].iter().fold(terms[0], |sum, term| sum - term))
     }
 
-    /// Sharing values changes no bit: the formulas of the specification, parenthesized in full.
+    /// Sharing values changes no bit, compared with the fully parenthesized formulas of the specification.
     #[test]
     fn shared_values_are_those_of_the_formulas() {
         let mut numbers = Numbers(3);
@@ -252,7 +251,7 @@ mod tests {
         }
     }
 
-    /// Tests that on an edge that only translates the polynomials are those of the exact definition.
+    /// Tests that the polynomials of an edge that only translates are those of the exact definition.
     #[test]
     fn a_translating_edge_gives_the_exact_polynomials() {
         let [x1, x2, x3] = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)].map(vector);
@@ -260,7 +259,7 @@ mod tests {
         let [distance, first, second, approach] = polynomials([x1, d1], [x2, d2, x3, d3], 0.25);
         // The gap along y is 1 - t and the squared length 4: 4 (1/16 - (1 - t)^2).
         assert_eq!(distance.coefficients(), [-4.0, 8.0, -3.75]);
-        // With no relative motion along the edge both ends stay at distance 1 of 2, times the length.
+        // Without relative motion along the edge both ends stay at distance 1 of 2, times the length.
         assert_eq!(first.coefficients(), [2.0]);
         assert_eq!(second.coefficients(), [2.0]);
         assert_eq!(approach.coefficients().len(), 2);

@@ -1,13 +1,13 @@
-//! The order in which the C++ library's sort leaves entries with equal keys.
+//! Reproduces the order in which the C++ library's sort leaves entries with equal keys.
 //!
-//! Introsort: quicksort around a median of three, heapsort if that recurses too deep, and one insertion at the end. Up
-//! to [`THRESHOLD`] entries keep their order if keys are equal; beyond that they do not, and the original's sums depend
-//! on it.
+//! Introsort is quicksort with a median of three, heapsort if the recursion is too deep, and a final insertion sort. Up
+//! to [`THRESHOLD`] entries with equal keys keep their order. Longer lists do not, and the original's sums depend on
+//! the order.
 
-/// Parts of at most this many entries are left to the insertion at the end.
+/// The maximum length of parts that are left to the final insertion sort.
 const THRESHOLD: usize = 16;
 
-/// Sorts entries by rising keys. A key that is no number stays somewhere.
+/// Sorts entries by ascending keys. Entries with NaN keys end up in unspecified places.
 pub(super) fn sort<T: Copy>(list: &mut [T], key: impl Fn(&T) -> f64 + Copy) {
     let is_less = |one: &T, other: &T| key(one) < key(other);
     if let Some(depth) = list.len().checked_ilog2() {
@@ -33,7 +33,7 @@ fn divide<T: Copy>(mut list: &mut [T], mut depth: u32, is_less: impl Fn(&T, &T) 
     }
 }
 
-/// Returns the place whose entry is the median.
+/// Returns the index of the median entry.
 fn median([a, b, c]: [usize; 3], is_less: impl Fn(usize, usize) -> bool) -> usize {
     match (is_less(a, b), is_less(b, c), is_less(a, c)) {
         (true, true, _) | (false, false, false) => b,
@@ -42,12 +42,12 @@ fn median([a, b, c]: [usize; 3], is_less: impl Fn(usize, usize) -> bool) -> usiz
     }
 }
 
-/// Moves entries below the first entry before those above it; returns where the second part begins.
+/// Moves entries below the first entry before those above it. Returns the start of the second part.
 fn partition<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool) -> usize {
     let pivot = list[0];
     let (mut first, mut last) = (1, list.len());
     loop {
-        // The bounds hold back keys that are no numbers.
+        // The bounds stop the search at NaN keys.
         while first < list.len() && is_less(&list[first], &pivot) {
             first += 1;
         }
@@ -74,7 +74,7 @@ fn heapsort<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool + Copy) {
     }
 }
 
-/// Lets a hole sink to the bottom of a heap, and an entry rise from there.
+/// Moves a hole to the bottom of a heap, and an entry up from there.
 fn sift<T: Copy>(heap: &mut [T], top: usize, value: T, is_less: impl Fn(&T, &T) -> bool) {
     let mut hole = top;
     while 2 * hole + 2 < heap.len() {
@@ -94,11 +94,11 @@ fn sift<T: Copy>(heap: &mut [T], top: usize, value: T, is_less: impl Fn(&T, &T) 
     heap[hole] = value;
 }
 
-/// Sorts by insertion. Equal keys keep their order.
+/// Sorts by insertion; equal keys keep their order.
 fn insert_all<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     for end in 1..list.len() {
         let value = list[end];
-        // Only then the search passes keys that are NaN.
+        // Only in this case the search passes NaN keys.
         let is_least = end < THRESHOLD && is_less(&value, &list[0]);
         let mut hole = end;
         while hole > 0 && (is_least || is_less(&value, &list[hole - 1])) {
@@ -113,7 +113,7 @@ fn insert_all<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
 mod tests {
     use super::*;
 
-    /// Sorts numbers, each with its place before.
+    /// Sorts numbers, and returns each number's previous index.
     fn sorted(keys: &[f64]) -> Vec<usize> {
         let mut list: Vec<(f64, usize)> = keys.iter().copied().zip(0..).collect();
         sort(&mut list, |entry| entry.0);
@@ -135,7 +135,8 @@ mod tests {
             sorted(&keys(&|i| i));
             sorted(&keys(&|i| count - i));
             sorted(&keys(&|i| i.wrapping_mul(2_654_435_761) % 7));
-            // The median of three is always among the least: quicksort alone would take a step for each pair.
+            // The median of three is always among the smallest, so quicksort alone would take a quadratic number of
+            // steps.
             sorted(&keys(&|i| if i % 2 == 0 { count + i } else { i }));
         }
         let mut none = [f64::NAN, 1.0, f64::NAN, 0.0].repeat(10);

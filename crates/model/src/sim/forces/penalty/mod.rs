@@ -1,9 +1,9 @@
-//! The penalty force: everything closer than the thickness repels (simulation.md 3, penalty force).
+//! The penalty force, which repels all bodies closer than the thickness (simulation.md 3, penalty force).
 //!
-//! Its Hessians count as zero, as in the original. There is no guard against zero distance: the direction is NaN then,
-//! and reaches the gradient when the distance test holds. Only the contest's detection has a guard.
+//! Its Hessians count as zero, as in the original. There is no guard against zero distance: the direction is then NaN,
+//! and enters the gradient if the distance test holds. Only the contest's detection has a guard.
 //!
-//! Each detection has an order of its own in which pairs are summed ([`PenaltyPairs`]).
+//! Each detection sums the pairs in a specific order ([`PenaltyPairs`]).
 mod introsort;
 mod pairs;
 mod sweep;
@@ -28,22 +28,22 @@ pub use pairs::PenaltyPairs;
 pub use sweep::SweepOrder;
 pub use terms::PenaltyTerms;
 
-/// The force of a scene, with the memory to find near pairs.
+/// The penalty force of a scene, with the memory to find near pairs.
 #[derive(Debug, Clone)]
 pub(super) struct Penalty {
     law: Law,
     pairs: PenaltyPairs,
 }
 
-/// Stiffness `k` (force per length) and thickness `h` (length) of the layer around every body.
+/// The stiffness (force per length) and the thickness (length) of the layer around every body.
 #[derive(Debug, Clone, Copy)]
 struct Law {
-    /// `k`
+    /// The stiffness `k`.
     stiffness: f64,
-    /// `h`
+    /// The thickness `h`.
     thickness: f64,
-    /// Whether it is that of Theme 2, Milestone 3 (simulation.md 3.1): bodies at the same place do not push each other,
-    /// particles compare squares of lengths, and the direction from one to the other is normalized twice.
+    /// Whether the force is that of Theme 2, Milestone 3 (simulation.md 3.1): bodies at the same position do not repel
+    /// each other, particles compare squared lengths, and the direction between them is normalized twice.
     is_contest: bool,
 }
 
@@ -79,7 +79,7 @@ impl Law {
         }
     }
 
-    /// Returns whether bodies at this distance repel each other.
+    /// Returns whether bodies at `distance` repel each other.
     #[inline]
     fn repels(self, distance: f64, reach: f64) -> bool {
         distance < reach && !(self.is_contest && distance < CONTEST_DISTANCE)
@@ -90,7 +90,7 @@ impl Law {
         let (r1, r2) = (bodies.radii[i], bodies.radii[j]);
         let reach = (r1 + r2) + self.thickness;
         let l = length(n);
-        // In the contest a length of no number repels, but its square is below nothing.
+        // In the contest a NaN length repels, but its square compares false.
         let repels = if self.is_contest { n.dot(&n) < reach * reach && !(l < CONTEST_DISTANCE) } else { l < reach };
         if repels {
             let u = if self.is_contest { unit(unit(n)) } else { unit(n) };
@@ -105,7 +105,7 @@ impl Law {
         let [first, second] = bodies.edges[edge];
         let (x1, x2, x3) = (at(x, i), at(x, first), at(x, second));
         let x32 = x3 - x2;
-        // These comparisons keep a NaN, unlike those of the responses.
+        // Unlike the comparisons of the responses, these keep a NaN.
         let alpha = ((x1 - x2).dot(&x32) / x32.dot(&x32)).clamp(0.0, 1.0);
         let n = (x2 + alpha * x32) - x1;
         let (r1, r2) = (bodies.radii[i], bodies.edge_radii[edge]);

@@ -1,8 +1,8 @@
 //! The pairs that a penalty force sums, and their order.
 //!
-//! A detection pass has one order (collisions.md 1). The contest's detection (Theme 2, Milestone 3) has another: the
-//! original searches for near pairs ([`Sweep`]), and sums those of particles, then particles with edges, then particles
-//! with half-planes.
+//! The default is the order of a detection pass (collisions.md 1). In the contest (Theme 2, Milestone 3) the original
+//! searches for near pairs ([`Sweep`]), and sums pairs of particles, then particles with edges, then particles with
+//! half-planes.
 use super::sweep::{Sweep, SweepOrder};
 use crate::{
     scene::{CollisionDetection, Scene},
@@ -14,7 +14,7 @@ use crate::{
 };
 use fosssim_num::vector::{Vec2, at};
 
-/// The pairs of a scene's penalty force, with the memory to find those that are near.
+/// The pairs of a scene's penalty force, with the memory to find near pairs.
 #[derive(Debug, Clone)]
 pub struct PenaltyPairs {
     radii: Vec<f64>,
@@ -26,7 +26,7 @@ pub struct PenaltyPairs {
 }
 
 impl PenaltyPairs {
-    /// Creates the pairs for the bodies of a scene and this thickness.
+    /// Creates the pairs for the bodies of a scene and the given thickness.
     #[must_use]
     pub fn new(scene: &Scene, thickness: f64, detection: CollisionDetection) -> Self {
         let is_contest = detection == CollisionDetection::Contest;
@@ -40,20 +40,20 @@ impl PenaltyPairs {
         }
     }
 
-    /// Writes down the order of the last search of a contest; false for other scenes.
+    /// Copies the order of a contest's last search into `order`. Returns false for other scenes.
     pub fn order(&self, order: &mut SweepOrder) -> bool {
         self.sweep.as_ref().map(|sweep| sweep.order(order)).is_some()
     }
 
-    /// Continues from this order, in a contest.
+    /// Continues from `order`, in a contest.
     pub fn set_order(&mut self, order: &SweepOrder) {
         if let Some(sweep) = &mut self.sweep {
             sweep.set_order(order);
         }
     }
 
-    /// Calls `hear` for all pairs, in the order in which they are summed, that may be closer at positions `x` (2N) than
-    /// their radii and the thickness. In large scenes few others are among them.
+    /// Calls `hear` for all pairs that may be closer at positions `x` (2N) than their radii and the thickness, in the
+    /// order in which they are summed. In large scenes few other pairs are included.
     pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;
@@ -78,7 +78,7 @@ impl PenaltyPairs {
                 others.for_each(|j| hear(pair(PairKind::ParticleParticle, i, j)));
                 edges.for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
             } else {
-                // Nearly all others are beyond reach, which is tested here with as few instructions as possible.
+                // Nearly all other pairs are out of reach, which is tested with as few instructions as possible.
                 let (own, radius) = (at(x, i), self.radii[i]);
                 let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
                 for (j, (&other, other_radius)) in others.zip(places) {

@@ -1,30 +1,30 @@
 //! The contest's search for near pairs, and the order in which it finds them (simulation.md 3.1).
 //!
-//! Bodies are boxes of their bare radii: boxes that overlap on x and on y are near. With edges, unless there are fewer
-//! than one for a hundred particles, boxes have to overlap on x + y and x - y, too. The search visits bodies in the
-//! order of their beginnings on x. It continues from the order of the search before, so that bodies which begin at the
-//! same place keep their order; the first order is that of the C++ library's sort.
+//! Each body has a box of its radius without the layer; boxes that overlap on x and on y are near. If the scene has at
+//! least one edge per hundred particles, boxes must overlap on x + y and x - y as well. The search visits bodies in the
+//! order of their lower ends on x. It continues from the order of the previous search, so bodies with equal lower ends
+//! keep their order; the first order is that of the C++ library's sort.
 use super::introsort;
 use crate::scene::Scene;
 use fosssim_num::vector::{Vec2, at};
 use std::f64::consts::SQRT_2;
 
-/// Scenes with at least one edge for this many particles have boxes with four axes.
+/// The maximum number of particles per edge in scenes whose boxes have four axes.
 const PARTICLES_PER_EDGE: usize = 100;
 
-/// Boxes are compared on y as many at a time.
+/// The number of boxes that are compared on y at a time.
 const BLOCK: usize = 8;
 
-/// The bodies in the order in which the search before has left them.
+/// The order of bodies after the previous search.
 ///
-/// A force at certain positions depends on it if bodies begin at the same place: it belongs to a state.
+/// The order is part of a state, because a force depends on it if bodies have the same lower end.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct SweepOrder {
     particles: Vec<u32>,
     edges: Vec<u32>,
 }
 
-/// The search, with its memory.
+/// The search for near pairs, with its memory.
 #[derive(Debug, Clone)]
 pub(super) struct Sweep {
     has_four_axes: bool,
@@ -32,11 +32,11 @@ pub(super) struct Sweep {
     edges: Vec<([usize; 2], f64)>,
     particle_boxes: Vec<BodyExtent>,
     edge_boxes: Vec<BodyExtent>,
-    /// The lower and upper ends on y of the particles' boxes, side by side for many comparisons at a time.
+    /// The lower and upper ends of the particles' boxes on y, in arrays for many comparisons at a time.
     heights: [Vec<f64>; 2],
-    /// The memory to sort boxes.
+    /// The memory for sorting boxes.
     sorting: (Vec<u128>, Vec<BodyExtent>),
-    /// The greatest end on x of the edges up to each.
+    /// The largest upper end on x of the edges up to each edge.
     furthest: Vec<f64>,
 }
 
@@ -72,7 +72,7 @@ impl Sweep {
         }
     }
 
-    /// Continues from this order.
+    /// Continues from `order`.
     pub fn set_order(&mut self, order: &SweepOrder) {
         for (list, boxes) in [(&order.particles, &mut self.particle_boxes), (&order.edges, &mut self.edge_boxes)] {
             boxes.clear();
@@ -80,7 +80,7 @@ impl Sweep {
         }
     }
 
-    /// Sorts the bodies anew, for positions `x` (2N).
+    /// Sorts the bodies for positions `x` (2N).
     pub fn update(&mut self, x: &[f64]) {
         let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, heights, sorting, furthest } = self;
         let particle = |body: u32| {
@@ -103,7 +103,7 @@ impl Sweep {
         }));
     }
 
-    /// Calls `hear` for all near pairs of particles, the smaller number first.
+    /// Calls `hear` for all near pairs of particles, with the smaller number first.
     pub fn visit_particles(&self, mut hear: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
         let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {
@@ -113,7 +113,7 @@ impl Sweep {
             }
         };
         let begins_behind = |other: &BodyExtent, one: &BodyExtent| other.low[0] > one.high[0];
-        // A box that begins nowhere parts the order into several.
+        // A box whose lower end is NaN splits the order into parts.
         let is_one_order = boxes.iter().all(|one| !one.low[0].is_nan());
         let mut end = 0;
         for (index, one) in boxes.iter().enumerate() {
@@ -122,7 +122,7 @@ impl Sweep {
                 near.for_each(|other| hear_if_near(one, other));
                 continue;
             }
-            // Boxes of similar sizes end one after the other, so the end of the near ones moves little.
+            // Boxes of similar sizes end in a similar order, so the end of the near boxes moves little.
             end = end.max(index + 1);
             while end < boxes.len() && !begins_behind(&boxes[end], one) {
                 end += 1;
@@ -133,7 +133,7 @@ impl Sweep {
             let (lows, more_lows) = self.heights[0][index + 1..end].as_chunks::<BLOCK>();
             let (highs, _) = self.heights[1][index + 1..end].as_chunks::<BLOCK>();
             for (block, (lows, highs)) in lows.iter().zip(highs).enumerate() {
-                // As wide as the numbers, so that several are compared at a time.
+                // As wide as the floating-point numbers, so that several are compared at a time.
                 let mut far = [0_u64; BLOCK];
                 for ((far, low), high) in far.iter_mut().zip(lows).zip(highs) {
                     *far = u64::from(one.low[1] > *high) | u64::from(*low > one.high[1]);
@@ -148,7 +148,7 @@ impl Sweep {
         }
     }
 
-    /// Calls `hear` for all particles with the edges near them, except their own.
+    /// Calls `hear` for all particles with their near edges, except edges that end in them.
     pub fn visit_edges(&self, mut hear: impl FnMut(usize, usize)) {
         for one in &self.particle_boxes {
             let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
@@ -162,8 +162,8 @@ impl Sweep {
     }
 }
 
-/// Makes the boxes of `count` bodies, and sorts them as they begin on x: from the order that they have, if they have
-/// one. The original then sorts by insertion, so no body passes one that begins at NaN.
+/// Creates the boxes of `count` bodies, and sorts them by lower ends on x, from the previous order if there is one. In
+/// that case the original sorts by insertion, so no body passes a body whose lower end is NaN.
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 fn sort(
     boxes: &mut Vec<BodyExtent>,
@@ -176,7 +176,8 @@ fn sort(
         return introsort::sort(boxes, |one| one.low[0]);
     }
     boxes.iter_mut().for_each(|one| *one = make(one.body));
-    // Whole numbers in the order of the places on x, then of the search before; bodies are brought there once.
+    // Keys are integers in the order of the position on x, then of the previous search, so that each body is moved only
+    // once.
     keys.clear();
     keys.extend(boxes.iter().zip(0_u32..).map(|(one, rank)| u128::from(rising(one.low[0])) << 32 | u128::from(rank)));
     for part in keys.split_mut(|key| boxes[*key as u32 as usize].low[0].is_nan()) {
@@ -187,19 +188,19 @@ fn sort(
     std::mem::swap(boxes, sorted);
 }
 
-/// Returns a whole number that rises with a number, the same for both zeros.
+/// Returns an integer that increases with `number`, the same for both zeros.
 const fn rising(number: f64) -> u64 {
-    // Adding zero makes -0 the same as 0.
+    // Adding zero turns -0 into 0.
     let bits = (number + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
 }
 
 impl BodyExtent {
-    /// Returns the extent around all that is between two places, with this radius.
+    /// Returns the extent around everything between two points, widened by `radius`.
     fn around(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
         let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
-            // As the processor's instructions: of two places that can't be compared the second counts.
+            // Like the processor's instructions: if two numbers cannot be compared, the second counts.
             own.low[axis] = if one < other { one } else { other } - radius;
             own.high[axis] = if one > other { one } else { other } + radius;
         };
@@ -212,7 +213,8 @@ impl BodyExtent {
         own
     }
 
-    /// Returns whether boxes overlap or touch on all axes: x last, on which a search has found them near.
+    /// Returns whether boxes overlap or touch on all axes; x is tested last, because the search has found them near on
+    /// x.
     fn overlaps(&self, other: &Self) -> bool {
         [1, 2, 3, 0]
             .into_iter()

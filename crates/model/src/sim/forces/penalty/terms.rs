@@ -1,4 +1,4 @@
-//! The force of the penalty layer, pair by pair.
+//! The penalty force as separate terms, one per pair.
 use super::Penalty;
 use crate::{
     scene::{Collision, Scene},
@@ -9,7 +9,7 @@ use crate::{
 };
 use fosssim_num::vector::{Vec2, at, put};
 
-/// The penalty force of a scene as its terms, which a step sums.
+/// The terms of a scene's penalty force, which a step sums.
 #[derive(Debug, Clone)]
 pub struct PenaltyTerms {
     bodies: Bodies,
@@ -18,7 +18,7 @@ pub struct PenaltyTerms {
 }
 
 impl PenaltyTerms {
-    /// Returns the terms of a scene with `penalty` handling; `None` for all others.
+    /// Returns the terms of a scene with `penalty` handling; `None` for other scenes.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Option<Self> {
         let Collision::Penalty { stiffness, thickness, detection } = scene.collision else { return None };

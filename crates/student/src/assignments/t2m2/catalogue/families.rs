@@ -1,5 +1,5 @@
-//! Tests that the catalogue is closed under the assignment's symmetries: a mistake with one kind of pair, one end, one
-//! place or one quantity exists for the others, or a reason here says why not.
+//! Tests that the catalogue is closed under the assignment's symmetries. A mistake with one kind of pair, one end, one
+//! place or one quantity exists for the others, or a reason is given here.
 use super::CATALOGUE;
 use crate::assignments::{
     all::find,
@@ -7,11 +7,11 @@ use crate::assignments::{
 };
 use std::collections::BTreeSet;
 
-/// The contents of one place of a family.
+/// The contents of one cell of a family.
 enum FamilyCell {
-    /// A row with this id.
+    /// The row with this id.
     Is(&'static str),
-    /// No row, because of this.
+    /// No row, for this reason.
     None(&'static str),
 }
 
@@ -19,14 +19,14 @@ use FamilyCell::{Is, None as No};
 
 /// Rows that differ in one respect.
 struct MistakeFamily {
-    /// The sides, in the order of the cells.
+    /// The names of the columns, in the order of the cells.
     sides: &'static [&'static str],
-    /// The mistakes, for each side.
+    /// The mistakes, with one cell per column.
     rows: &'static [(&'static str, &'static [FamilyCell])],
 }
 
-const SUPPLIED: FamilyCell = No("the approach of edges is supplied; whoever changes it changes all of it");
-const PRODUCTS: FamilyCell = No("the products of the overlap are told one by one");
+const SUPPLIED: FamilyCell = No("the approach of edges is supplied, so students change it as a whole");
+const PRODUCTS: FamilyCell = No("the products of the overlap are separate rows");
 const ONE_RADIUS: FamilyCell = No("a half-plane has no radius");
 const AT_REST: FamilyCell = No("half-planes do not move");
 const ONE_IS_ENOUGH: FamilyCell = No("it holds a tolerance of the rules, for which one kind is enough");
@@ -36,11 +36,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
     rows: &[
         (
             "displacements reversed",
-            &[
-                Is("pp-displacements-swapped"),
-                No("told by what it makes of all inputs"),
-                No("told by what it makes of all inputs"),
-            ],
+            &[Is("pp-displacements-swapped"), No("it affects all inputs"), No("it affects all inputs")],
         ),
         ("positions' index", &[Is("pp-position-index"), Is("pe-position-index"), Is("ph-position-index")]),
         ("lowest power first", &[Is("pp-reversed"), Is("pe-reversed"), Is("ph-reversed")]),
@@ -57,7 +53,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
             &[
                 Is("pp-first-still"),
                 Is("pe-particle-still"),
-                No("nothing moves then: told as a polynomial cut to its constant"),
+                No("without motion only the constant of the polynomial remains"),
             ],
         ),
         ("second body still", &[Is("pp-second-still"), Is("pe-edge-still"), AT_REST]),
@@ -87,10 +83,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
         ("leading coefficient missing", &[Is("pp-no-quadratic"), Is("pe-three-terms"), Is("ph-no-quadratic")]),
         ("constant sign", &[Is("pp-constant-sign"), Is("pe-constant-minus-aa"), Is("ph-constant-sign")]),
         ("tiny error", &[Is("pp-tiny-error"), ONE_IS_ENOUGH, ONE_IS_ENOUGH]),
-        (
-            "one component only",
-            &[Is("pp-x-only"), No("told by what it makes of all inputs"), No("told by what it makes of all inputs")],
-        ),
+        ("one component only", &[Is("pp-x-only"), No("it affects all inputs"), No("it affects all inputs")]),
         ("approach negated", &[Is("pp-approach-negated"), Is("pe-approach-negated"), Is("ph-approach-negated")]),
         ("approach, slope's sign", &[Is("pp-approach-slope-sign"), SUPPLIED, Is("ph-approach-slope-sign")]),
         ("approach, slope twice", &[Is("pp-approach-slope-twice"), SUPPLIED, Is("ph-approach-slope-twice")]),
@@ -135,7 +128,7 @@ const ENDS: MistakeFamily = MistakeFamily {
         ("its particle's radius", &[Is("pe-first-end-radius"), Is("pe-second-end-radius")]),
         ("contact vector to it", &[Is("pe-contact-first-end"), Is("pe-contact-second-end")]),
         ("alone in the zone", &[Is("zones-one-endpoint"), Is("zones-other-endpoint")]),
-        ("not pushed", &[No("who forgets one forgets the last"), Is("response-one-endpoint")]),
+        ("not pushed", &[No("a student who omits one end omits the last"), Is("response-one-endpoint")]),
     ],
 };
 
@@ -158,10 +151,10 @@ const PLACES: MistakeFamily = MistakeFamily {
     rows: &[
         ("contact alone", &[Is("loop-first-only"), Is("loop-last-only")]),
         ("contact left out", &[Is("loop-first-skipped"), Is("loop-last-skipped")]),
-        ("contact of a pass alone", &[Is("ct-first-only"), No("contacts are resolved as they are found")]),
+        ("contact of a pass alone", &[Is("ct-first-only"), No("contacts are resolved immediately")]),
         ("zone alone", &[Is("geometric-first-zone-only"), Is("geometric-last-zone-only")]),
         ("zone left out", &[Is("geometric-first-zone-skipped"), Is("geometric-last-zone-skipped")]),
-        ("half-plane alone", &[Is("pairs-first-half-plane-only"), No("who keeps one result keeps the first object's")]),
+        ("half-plane alone", &[Is("pairs-first-half-plane-only"), No("students keep the first object's result")]),
         ("zone's flag alone", &[Is("zones-flag-lost"), Is("zones-flag-overwritten")]),
         ("impulse alone", &[Is("loop-first-only"), Is("loop-last-wins")]),
     ],
@@ -206,7 +199,7 @@ const SUMS: MistakeFamily = MistakeFamily {
             &[
                 Is("failsafe-center-at-end"),
                 No("a motion has no end"),
-                No("it is the same momentum but for round-off: momentum-from-end"),
+                No("it is the same momentum up to round-off: momentum-from-end"),
                 Is("failsafe-inertia-at-end"),
             ],
         ),
@@ -251,7 +244,7 @@ const SUMS: MistakeFamily = MistakeFamily {
 
 const FAMILIES: [&MistakeFamily; 7] = [&PAIRS, &ENDS, &ALPHAS, &PLACES, &QUANTITIES, &ROUNDS, &SUMS];
 
-/// Rows of one kind of pair alone, by how their ids begin, and why they are alone.
+/// Prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
 const ALONE: &[(&str, &str)] = &[
     ("pe-quartic-", "a product of the quartic"),
     ("pe-cubic-", "a product of the quartic"),
@@ -266,7 +259,7 @@ const ALONE: &[(&str, &str)] = &[
     ("pe-contact-alpha-", "only an edge has alpha"),
     ("pe-contact-other-end", "only an edge has alpha"),
     ("pe-contact-nearest-end", "only an edge has ends"),
-    ("pe-radius-index", "another one's radius, beside that of the first edge"),
+    ("pe-radius-index", "the radius of another body; the first edge's is a separate row"),
     ("ph-overlap-signed", "only a half-plane has sides"),
     ("ph-first-half-plane", "the loops over particles and edges already have their indices"),
     ("ph-no-normal-square", "only a half-plane has a normal"),
@@ -298,7 +291,7 @@ fn every_cell_is_a_row_or_has_its_reason() {
     for (name, side, cell) in cells() {
         match cell {
             Is(id) => assert!(find(id).is_some_and(|row| row.kind == RowKind::Wrong), "{name}, {side}: no row {id}"),
-            No(reason) => assert!(reason.contains(' '), "{name}, {side}: why is there none?"),
+            No(reason) => assert!(reason.contains(' '), "{name}, {side}: the reason for the missing row is empty"),
         }
     }
     for (name, cells) in PAIRS.rows {
@@ -308,7 +301,7 @@ fn every_cell_is_a_row_or_has_its_reason() {
     }
 }
 
-/// A new row of one kind of pair needs its place in a family, and so its likes for the other kinds.
+/// A new row of one kind of pair must be in a family, together with the rows of the other kinds.
 #[test]
 fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let known: BTreeSet<&str> =
@@ -322,5 +315,5 @@ fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     assert!(gaps.is_empty(), "which rows are like these for other kinds of pairs? {gaps:?}");
     let vain: Vec<&str> =
         ALONE.iter().map(|(id, _)| *id).filter(|id| !CATALOGUE.iter().any(|row| row.id.starts_with(id))).collect();
-    assert!(vain.is_empty(), "{vain:?} name no row");
+    assert!(vain.is_empty(), "{vain:?} do not name a row");
 }

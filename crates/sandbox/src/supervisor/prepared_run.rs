@@ -1,4 +1,4 @@
-//! The state before a run begins: the resources that it has to itself on this machine, and the preparations for it.
+//! The exclusive resources of a run, and the preparations before it begins.
 
 use std::{io, os::fd::BorrowedFd, rc::Rc};
 
@@ -11,25 +11,25 @@ use crate::{
     wire::{Failure, RunOrder, stage},
 };
 
-/// The resources that a run has to itself on this machine, for as long as this is held.
+/// The exclusive resources of a run on this machine, held until this is dropped.
 pub(super) struct HeldResources {
-    /// A user of its own.
+    /// The run's own user.
     pub(super) slot: Option<slot::Slot>,
-    /// A control group.
+    /// The run's control group.
     pub(super) group: Option<Group>,
 }
 
 impl HeldResources {
     /// Takes the resources that the order requires.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
-        let taken = |error: io::Error| Failure::new(format!("take a user of its own ({error})"), &error);
+        let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
         let group = order.walls.group.then(|| Group::make(order)).transpose();
         Ok(Self { slot, group: group.map_err(stage("make a control group"))? })
     }
 }
 
-/// The preparations that need no program, and serve all runs that differ in scene and folder only.
+/// The preparations that need no program, shared by all runs that differ only in scene and folder.
 #[derive(Default)]
 pub(super) struct PreparedRun {
     places: Option<walls::Places>,
@@ -40,9 +40,10 @@ pub(super) struct PreparedRun {
 }
 
 impl PreparedRun {
-    /// Prepares for orders like this one, whose programs have this number, in a process that has one thread.
+    /// Prepares for orders like `order`, whose programs have the process number `number`, in a process that has one
+    /// thread.
     pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
-        let open = || walls::Places::for_order(order).out_of_the_way();
+        let open = || walls::Places::for_order(order).with_high_numbers();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
         let filters = filter::filters(purpose).map_err(stage("compile the system call filter"))?;
         let places = order.walls.landlock.then(open).flatten();

@@ -1,4 +1,5 @@
-//! Mistakes that a trace denies, whatever else is wrong with it: its stages are not empty, its zones do not stop.
+//! Finds mistakes that a trace contradicts, whatever other mistakes it has: its stages are not empty, its zones do not
+//! stop.
 use crate::diagnose::sampling::{KeptStep, LoggedNumbers, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference};
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -7,8 +8,8 @@ use fosssim_model::{
 use fosssim_num::vector::{at, length};
 use fosssim_student::{CATALOGUE, Mistake, Row};
 
-/// Returns the keys of mistakes by which something is never done that this trace does: a zone is moved, a pass is made,
-/// a polynomial of the kind is right.
+/// Returns the keys of mistakes by which a program never does something that this trace does: move a zone, make a pass,
+/// or log a right polynomial of a kind.
 pub(super) fn find_denied(scene: &Scene, scan: &Scan) -> Vec<String> {
     let samples = || scan.wrong.iter().chain(&scan.right);
     let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
@@ -42,7 +43,7 @@ fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
         if next > right {
             break;
         }
-        // A constant is the same as any other of its sign, of whatever pair.
+        // A constant equals any other constant of its sign, of whatever pair.
         let list = &sample.records.end.polynomials;
         let says_something = (next - pair.kind.polynomials()..next).any(|index| list.get(index).len() > 1);
         if says_something && !kinds.contains(&pair.kind) {
@@ -61,7 +62,7 @@ fn has_passes(sample: &KeptStep) -> bool {
     mid.as_ref().is_some_and(|mid| end.polynomials.len() > mid.polynomials.len())
 }
 
-/// Returns whether the end of the step is another state than its middle.
+/// Returns whether the end state of the step differs from its mid state.
 fn moves(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
@@ -69,7 +70,7 @@ fn moves(sample: &KeptStep) -> bool {
     is_sound && sample.records.mid.as_ref().is_some_and(differs)
 }
 
-/// Returns whether the geometric part moves a particle that is not back at its start then.
+/// Returns whether the geometric part moves a particle and leaves it away from its start.
 fn moves_on(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;

@@ -1,11 +1,11 @@
-//! The polynomials of a record as a program logs them.
+//! The polynomials of a record, as logged by a program.
 use super::{Area, Mistake, author::Student, world::StepLog};
 use std::borrow::Cow;
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Trace];
 
-/// Returns the coefficients of the record's polynomial `index`, as this program logs them.
+/// Returns the coefficients of the record's polynomial `index`, as logged by this program.
 pub fn logged_polynomial<'a>(student: Student, log: &'a StepLog, index: usize) -> Cow<'a, [f64]> {
     let partner = index ^ 1;
     let Some(mistake) = student.mistake_in(HERE) else { return log.polynomials[index].coefficients().into() };

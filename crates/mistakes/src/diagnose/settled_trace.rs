@@ -1,19 +1,20 @@
-//! One trace's own explanations, corrected by what all traces of its program show together.
+//! One trace's explanations, corrected by all traces of its program together.
 use super::{About, Explanation, WrongPairs, is_named_in, naming::as_row};
 use fosssim_student::find;
 
-/// The explanations of one trace, once all traces of its program are known.
+/// The explanations of one trace, after all traces of its program are known.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct SettledTrace {
     /// The explanations, the likeliest first.
     pub explanations: Vec<Explanation>,
-    /// The number of explanations at the front that all traces together give; this trace alone gives the others.
+    /// The number of explanations at the front that come from all traces together; the others come from this trace
+    /// alone.
     pub agreed: usize,
 }
 
-/// Settles a trace's own explanations by those of all traces together ([`explain_together`](super::explain_together)).
-/// If any of these explains the trace, they replace the trace's own, which know less, but keep its counts and its
-/// example. Else the trace keeps its own, without those that are `refuted`.
+/// Corrects a trace's own explanations by those of all traces together ([`explain_together`](super::explain_together)).
+/// If any of those explains the trace, they replace the trace's less informed ones, but keep its counts and its
+/// example. Otherwise the trace keeps its own, without those that are `refuted`.
 #[must_use]
 pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreed(own, one));
@@ -24,7 +25,7 @@ pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Stri
             agreed: 0,
         };
     }
-    // Each trace reports for itself where values stop being numbers.
+    // Each trace separately reports where values stop being finite.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
     SettledTrace { agreed: explanations.len(), explanations }
 }
@@ -39,19 +40,20 @@ fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> 
     Some(as_row(one, row, same_as.collect()))
 }
 
-/// Returns this explanation as the trace shows it; `None` if the trace's own ones do not name it.
+/// Returns an explanation from all traces together, as this trace shows it; empty if the trace's own explanations do
+/// not name it.
 fn find_agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
-        // Each trace may show more of them.
+        // Each trace may show several of them.
         return Vec::new();
     }
     if likely.is_unfinished() {
-        // Each stage by itself: not every trace shows all of them.
+        // Each stage separately, because some traces do not show all of them.
         return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
     }
     let shown = own.iter().find(|one| is_named_in(likely, std::slice::from_ref(one)));
     let as_shown = |one: &Explanation| {
-        // Steps are counted for known mistakes, and polynomials for guesses about these.
+        // Steps are counted for known mistakes, and polynomials for guesses about polynomials.
         let has_same_counts = matches!(one.about, About::Mistake) == matches!(likely.about, About::Mistake);
         let (reproduced, samples) = if has_same_counts { (one.reproduced, one.samples) } else { (0, 0) };
         let about = match (&one.about, &likely.about) {
@@ -82,8 +84,8 @@ mod tests {
         }
     }
 
-    /// A scene alone takes a loop that is one round short for an empty one; all scenes together know better, and the
-    /// scene's explanation must follow them.
+    /// From one scene alone, a loop that is one round short looks empty. All scenes together distinguish the two, and
+    /// the scene's explanation must follow them.
     #[test]
     fn a_scene_says_what_all_scenes_together_know() {
         let short = named("loop-one-fewer", &[], (7, 7));

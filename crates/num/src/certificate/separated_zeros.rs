@@ -1,28 +1,28 @@
-//! Whether a polynomial is clearly free of multiple zeros, by Euclid's algorithm for it and its derivative.
+//! Tests whether a polynomial clearly has no multiple zeros, by Euclid's algorithm for it and its derivative.
 //!
-//! A sample that falls on a double zero is decided by rounding, even where the polynomial is far from zero within the
-//! step. The last remainder of Euclid's algorithm is the discriminant up to a factor; it is compared with what a
-//! relative change of the coefficients could make of it (to first order, carried along with each coefficient).
+//! A sample at a double zero is decided by rounding, even if the polynomial is far from zero within the step. The last
+//! remainder of Euclid's algorithm is the discriminant up to a factor. It is compared with its largest change for a
+//! relative change of the coefficients (to first order, computed together with each coefficient).
 use super::super::tolerances::DISCRIMINANT_MARGIN;
 
-/// The coefficients of a polynomial of this degree or less, with 0 behind the last.
+/// The coefficients of a polynomial of degree below `LENGTH`, with 0 after the last.
 #[derive(Clone, Copy)]
 struct Entries<const LENGTH: usize> {
     values: [f64; LENGTH],
-    /// The greatest change of each per relative change of the first polynomial's coefficients.
+    /// The largest change of each coefficient per relative change of the first polynomial's coefficients.
     changes: [f64; LENGTH],
 }
 
 impl<const LENGTH: usize> Entries<LENGTH> {
-    /// Returns whether the leading one stays clear of zero. NaN does not.
+    /// Returns whether the leading coefficient is clearly not zero; false for NaN.
     #[inline(always)]
     fn is_clear(&self) -> bool {
         self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]
     }
 
-    /// Makes one step of the division: subtracts the multiple of the divisor at which the leading coefficient vanishes,
-    /// and moves up by one place. All places are computed, because places behind the last ones stay 0 and code without
-    /// branches works on several together.
+    /// Performs one step of the division: subtracts the multiple of the divisor that cancels the leading coefficient,
+    /// and shifts by one entry. All entries are computed, because entries after the last stay 0 and code without
+    /// branches processes several together.
     #[inline(always)]
     fn subtract(&mut self, divisor: &Self, reciprocal: f64) {
         let Self { values, changes } = self;
@@ -37,7 +37,7 @@ impl<const LENGTH: usize> Entries<LENGTH> {
 }
 
 /// Returns whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their moduli makes
-/// two zeros coincide. `false` also where an intermediate remainder is of lower degree than usual.
+/// two zeros coincide. Also `false` if an intermediate remainder has an unusually low degree.
 #[inline]
 pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
     let mut dividend = Entries { values: *coefficients, changes: coefficients.map(f64::abs) };

@@ -1,4 +1,4 @@
-//! Which rows of the catalogue a scene can show at all: no others are tried on it.
+//! Finds the rows of the catalogue that can show on a scene; no others are tried on it.
 use crate::diagnose::written::{is_written, term};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
@@ -7,11 +7,11 @@ use fosssim_model::{
 };
 use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 
-/// Penalty forces between bodies that are apart are tried on scenes with at most this number of pairs.
-const MOST_APART: usize = 5_000;
+/// The maximum number of pairs of scenes on which penalty forces between distant bodies are tried.
+const MAX_DISTANT_PAIRS: usize = 5_000;
 
-/// Returns the rows that may explain a trace of this scene, in the order of the catalogue: mistakes in what the student
-/// of the scene's assignment writes. Missing records are searched elsewhere, and so are near pairs
+/// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
+/// student of the scene's assignment. Missing records and near pairs are searched separately
 /// ([`near`](super::super::near)).
 pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried = |row: &&Row| {
@@ -21,12 +21,12 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     };
     let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
     let is_theirs = move |row: &&Row| is_written(row, assignment);
-    let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MOST_APART;
+    let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MAX_DISTANT_PAIRS;
     let is_cheap = move |row: &&Row| is_small || !reaches_apart(row);
     all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| shows(scene, &counts, row))
 }
 
-/// Returns whether a penalty force with this mistake checks all pairs, near or not.
+/// Returns whether a penalty force with this mistake checks all pairs, even distant ones.
 fn reaches_apart(row: &Row) -> bool {
     let Mistake::Step(StepMistake::Edit(edit)) = row.mistake else { return false };
     !edit.slip.keeps_distance() && matches!(term(row).row().part, Part::Penalty(_))
@@ -37,8 +37,8 @@ pub(super) const fn is_of_states(row: &Row) -> bool {
     matches!(row.mistake, Mistake::Step(_))
 }
 
-/// Returns whether a program with this row may leave another trace than one without. Only missing parts of the scene
-/// exclude it: stages of a step, and kinds of pairs.
+/// Returns whether a program with this mistake may write a different trace. A mistake is excluded only if the scene
+/// lacks a part: a stage of a step, or a kind of pair.
 #[must_use]
 pub fn can_show(scene: &Scene, row: &Row) -> bool {
     shows(scene, &pairs(scene).counts(), row)
@@ -60,7 +60,7 @@ fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     has_stage && row.kind_of_pair().is_none_or(|kind| counts[kind] > 0)
 }
 
-/// Returns whether mistakes of forces, integrators and what follows from them show.
+/// Returns whether mistakes of forces and integrators, and their effects, show.
 fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     let term = term(row);
     let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
@@ -84,7 +84,7 @@ mod tests {
     use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
     use fosssim_student::{Student, assignments::probe_scenes, trace};
 
-    /// A mistake that is not tried on a scene would leave the right trace of it.
+    /// A mistake that is not tried on a scene would leave the right trace of the scene.
     #[test]
     fn what_a_scene_can_not_show_leaves_its_trace_as_it_is() {
         let mut left_out = 0;
@@ -112,7 +112,7 @@ mod tests {
         assert!(left_out > 1000, "{left_out}");
     }
 
-    /// A force between bodies that are apart takes as long as there are pairs.
+    /// A force between distant bodies takes time proportional to the number of pairs.
     #[test]
     fn on_a_large_scene_no_program_looks_at_all_pairs() {
         let balls = |count: u32| {

@@ -1,4 +1,4 @@
-//! The changes from one picture to the next: films store them alone.
+//! The changes from one picture to the next; films store only the changes.
 use crate::size::Size;
 
 /// A rectangle of pixels, never empty.
@@ -11,9 +11,9 @@ pub struct ChangedArea {
 }
 
 impl ChangedArea {
-    /// Returns the smallest part outside of which two pictures of a byte per pixel are the same; one pixel where they
-    /// are the same everywhere, because a film has no empty pictures. All of a film's first picture, which has none
-    /// before.
+    /// Returns the smallest rectangle outside of which two pictures of one byte per pixel are equal; one pixel if they
+    /// are equal everywhere, because a film has no empty pictures. The first picture of a film has no previous one, and
+    /// its rectangle is the whole picture.
     pub fn between(size: Size, before: &[u8], after: &[u8]) -> Self {
         if before.is_empty() {
             return Self { left: 0, top: 0, width: size.width(), height: size.height() };
@@ -46,7 +46,7 @@ impl ChangedArea {
         part
     }
 
-    /// Returns the bytes of this part, row by row.
+    /// Returns the bytes of the rectangle, row by row.
     pub fn cut(self, size: Size, bytes: &[u8]) -> Vec<u8> {
         let row = size.width() as usize;
         let mut part = Vec::with_capacity(self.width as usize * self.height as usize);

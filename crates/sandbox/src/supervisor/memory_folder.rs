@@ -1,8 +1,7 @@
-//! A working folder in memory: a file system of its own whose size and number of files the kernel limits.
+//! A working folder in memory, which is a file system whose size and number of files the kernel limits.
 //!
-//! Files there are removed with the run, unless the grader holds them open. Their pages belong to no process, so that
-//! they are part of a program's resident memory only while it maps them. A control group's limit has room for all of
-//! them.
+//! Its files are removed with the run, unless the grader holds them open. Their pages belong to no process, so they
+//! count as resident memory of a program only while it maps them. A control group's limit has room for all of them.
 
 use std::{
     fs::{File, Permissions},
@@ -15,20 +14,20 @@ use rustix::io::Errno;
 
 use crate::wire::{self, RawBytes, RunOrder};
 
-/// A little more than the limit, so that a program that passes it is seen to.
+/// Additional bytes beyond the limit, so that the supervisor sees a program exceed it.
 const SPARE_BYTES: u64 = 1 << 20;
 const SPARE_FILES: u64 = 64;
-/// Bytes that are copied at one go.
+/// The number of bytes that are copied at a time.
 const BYTES_PER_COPY: usize = 1 << 16;
 
-/// Returns the options of the file system for this order's folder.
+/// Returns the mount options for the order's folder.
 pub(super) fn options(order: &RunOrder) -> String {
     let bytes = order.folder_bytes().saturating_add(SPARE_BYTES);
     let files = order.limits.folder_files.saturating_add(SPARE_FILES);
     format!("mode=700,size={bytes},nr_inodes={files}")
 }
 
-/// Copies files and folders with their permission bits. Holes stay holes; links and special files stay behind.
+/// Copies files and folders with their permission bits. Holes are kept; links and special files are not copied.
 pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
@@ -50,7 +49,7 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// Also for names that lead elsewhere.
+/// If a name leads out of the folder, or writing fails.
 pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()> {
     for (name, content) in files {
         let plain = wire::plain_name(name).ok_or(io::ErrorKind::InvalidInput)?;
@@ -59,16 +58,16 @@ pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()
     Ok(())
 }
 
-/// Copies the blocks of a file that hold anything, and leaves holes between them.
+/// Copies the data blocks of a file, and keeps the holes between them.
 ///
 /// # Errors
 ///
-/// `OutOfMemory` when they take more than `most` bytes.
+/// `OutOfMemory` if the blocks take more than `most` bytes.
 pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<()> {
     let mut buffer = vec![0; BYTES_PER_COPY];
     let (mut at, mut copied) = (0, 0);
     loop {
-        // A file system that knows no holes has none.
+        // On a file system without hole detection, a file has no holes.
         at = match rustix::fs::seek(from, rustix::fs::SeekFrom::Data(at)) {
             Err(Errno::NXIO) => break,
             Err(Errno::INVAL) => at,

@@ -5,7 +5,7 @@ use crate::{
 };
 use fosssim_judge::{
     Outcome,
-    kept::{KeptTrace, LONGEST},
+    kept::{KeptTrace, MAX_KEPT_BYTES},
     replay::{self, BothObservers, Options, Progress},
 };
 use fosssim_mistakes::diagnose::{Explanation, explain_kept};
@@ -15,28 +15,29 @@ use std::io::{self, Read};
 /// The part of a trace that is kept while it is judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeptPart {
-    /// Nothing: the trace is neither explained nor shown.
+    /// Nothing is kept, because the trace is neither explained nor shown.
     Nothing,
-    /// The trace's beginning; when judging stops, nothing more is read. The writer of a piped trace may write no more.
+    /// The beginning of the trace is kept. Reading stops when judging stops, because the writer of a piped trace may
+    /// write no more.
     Read,
-    /// The trace's beginning, including what follows the place where judging stops.
+    /// The beginning of the trace is kept, including the part after the place where judging stops.
     All,
 }
 
 /// A trace that has been judged.
 #[derive(Debug)]
 pub struct ExaminedTrace<'a> {
-    /// The scene.
+    /// The scene of the trace.
     pub scene: &'a Scene,
-    /// The verdict.
+    /// The verdict on the trace.
     pub outcome: Outcome,
-    /// The rulings on its steps.
+    /// The rulings on the trace's steps.
     pub rulings: Vec<StepRuling>,
-    /// The trace that was kept.
+    /// The kept part of the trace.
     pub trace: KeptTrace,
 }
 
-/// Judges a trace, and keeps what its explanation and its evidence need: the trace is read once.
+/// Judges a trace, and keeps the data for its explanation and its evidence, so that the trace is read only once.
 #[must_use]
 pub fn examine<'a, R: Read + Send>(
     scene: &'a Scene,
@@ -45,11 +46,11 @@ pub fn examine<'a, R: Read + Send>(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> ExaminedTrace<'a> {
-    let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { LONGEST });
+    let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { MAX_KEPT_BYTES });
     let mut rulings = StepRulings::default();
     let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut BothObservers(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
-        let room = (LONGEST - kept.bytes().len()) as u64;
+        let room = (MAX_KEPT_BYTES - kept.bytes().len()) as u64;
         // An error ends the kept part.
         let _ = io::copy(&mut kept.reader(trace.take(room)), &mut io::sink());
     }
@@ -57,14 +58,14 @@ pub fn examine<'a, R: Read + Send>(
 }
 
 impl ExaminedTrace<'_> {
-    /// Returns the likely mistakes of the program that left the trace ([`explain_kept`]).
+    /// Returns the likely mistakes of the program that wrote the trace ([`explain_kept`]).
     #[must_use]
     pub fn explain(&self) -> Vec<Explanation> {
         explain_kept(self.scene, &self.trace)
     }
 
-    /// Returns the evidence, with at most `budget` numbers of each motion: of the whole trace if it can be read again,
-    /// else of the kept part.
+    /// Returns the evidence, with at most `budget` numbers of each motion. It covers the whole trace if that can be
+    /// read again, otherwise the kept part.
     #[must_use]
     pub fn evidence(&self, again: Option<&mut dyn Read>, budget: usize) -> Evidence {
         let (fair, focus) = (self.outcome.fair.is_some(), Focus::from_outcome(&self.outcome));

@@ -1,29 +1,29 @@
-//! Which milestones' programs can run a scene, by the table of what their starter libraries know.
+//! Finds the milestones whose programs can run a scene, from the features of their starter libraries.
 use super::model::{Collision, CollisionDetection, Scene};
 use crate::assignments::{Assignment, CollisionType, ForceKind, Integrator};
 use std::fmt;
 
-/// A part of a scene that is unknown to the programs of an assignment.
+/// A part of a scene that the programs of an assignment do not know.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnknownFeature {
-    /// The assignment.
+    /// The assignment whose programs lack the feature.
     pub assignment: Assignment,
-    /// The part of the scene.
+    /// The unknown part of the scene.
     pub part: UnknownPart,
 }
 
 /// The part of a scene that an assignment's programs do not know.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum UnknownPart {
-    /// An unknown integrator: programs reject the scene.
+    /// An unknown integrator; programs reject the scene.
     Integrator(Integrator),
-    /// A force: they ignore it.
+    /// An unknown force, which programs ignore.
     Force(ForceKind),
-    /// A collision type.
+    /// An unknown collision type.
     Collision(CollisionType),
-    /// The contest's detection, outside of the contest: they ignore it.
+    /// The contest's detection outside the contest, which programs ignore.
     Contest,
-    /// Another detection than the contest's, in the contest.
+    /// A detection other than the contest's, in the contest.
     AllPairs,
     /// The thickness of the penalty force, in the contest.
     Thickness(f64),
@@ -32,7 +32,7 @@ pub enum UnknownPart {
 impl UnknownFeature {
     /// Returns whether a program rejects the scene and writes no trace.
     #[must_use]
-    pub const fn is_refused(&self) -> bool {
+    pub const fn is_rejected(&self) -> bool {
         match self.part {
             UnknownPart::Integrator(_) => true,
             UnknownPart::Collision(_) => self.assignment.definition().library.refuses_collisions,
@@ -44,7 +44,7 @@ impl UnknownFeature {
 impl fmt::Display for UnknownFeature {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let programs = format!("programs of {}", self.assignment.key().to_uppercase());
-        let verb = if self.is_refused() { "reject" } else { "ignore" };
+        let verb = if self.is_rejected() { "reject" } else { "ignore" };
         match self.part {
             UnknownPart::Integrator(integrator) => write!(formatter, "{programs} {verb} {}", integrator.name()),
             UnknownPart::Force(kind) => write!(formatter, "{programs} {verb} <{}>", kind.element()),
@@ -62,7 +62,7 @@ impl fmt::Display for UnknownFeature {
 }
 
 impl Scene {
-    /// Returns everything that programs of this assignment do not know, each kind once.
+    /// Returns everything in the scene that programs of `assignment` do not know, each kind once.
     pub fn unknown_to(&self, assignment: Assignment) -> impl Iterator<Item = UnknownFeature> {
         let library = &assignment.definition().library;
         let integrator = Some(self.integrator).filter(|integrator| !library.integrators.contains(integrator));
@@ -94,13 +94,13 @@ impl Scene {
             .map(move |part| UnknownFeature { assignment, part })
     }
 
-    /// Returns the assignments whose programs can run it, in the order of the course.
+    /// Returns the assignments whose programs can run the scene, in the order of the course.
     pub fn assignments(&self) -> impl Iterator<Item = Assignment> {
         Assignment::ALL.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
     }
 
-    /// Returns the first assignment of the course whose programs can run it; if there is none, the assignment that
-    /// added its collision handling.
+    /// Returns the first assignment of the course whose programs can run the scene; otherwise the assignment that added
+    /// its collision handling.
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         match self.collision {
@@ -117,7 +117,7 @@ mod tests {
         scene::read,
     };
 
-    /// Returns everything that programs of this assignment do not know of a scene with these elements.
+    /// Returns everything that programs of `assignment` do not know in a scene with these elements.
     fn unknown(assignment: Assignment, integrator: &str, elements: &str) -> Vec<String> {
         let text = format!(
             "<scene><duration time=\"1\"/><integrator type=\"{integrator}\" dt=\"0.5\"/>{elements}\

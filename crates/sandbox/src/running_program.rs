@@ -1,4 +1,4 @@
-//! A running program: the means to stop it, its outcome, and the files that it left.
+//! A running program, which can be stopped, with its outcome and the files that it left.
 
 use std::{
     fs::File,
@@ -19,10 +19,10 @@ use super::{
     wire::{self, COMMAND_CANCEL, Event, RunOrder},
 };
 
-/// The connection to the supervisor; `None` when the run is over.
+/// The connection to the supervisor; `None` after the run.
 type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
-/// A program at work. Dropped, it is stopped, and the drop waits until every process is dead.
+/// A running program. Dropping it stops the program and waits until every process is dead.
 #[derive(Debug)]
 pub struct RunningProgram {
     state: State,
@@ -32,18 +32,18 @@ pub struct RunningProgram {
 
 #[derive(Debug)]
 enum State {
-    /// Under a supervisor.
+    /// The run is controlled by a supervisor.
     Supervised(Box<SupervisedRun>),
-    /// Known already.
+    /// The outcome is known.
     Known(Box<RunOutcome>),
-    /// Handed out.
+    /// The outcome was returned to the caller.
     Taken,
 }
 
 #[derive(Debug)]
 pub(super) struct SupervisedRun {
     pub(super) host: Host,
-    /// The supervisor's answers.
+    /// The file from which the supervisor's answers are read.
     pub(super) answers: File,
     pub(super) session: Option<i32>,
     pub(super) user: Option<u32>,
@@ -59,14 +59,15 @@ impl RunningProgram {
         Self { state: State::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
     }
 
-    /// Returns a run in this folder whose outcome is known already.
+    /// Returns a run in the folder `path` whose outcome is known.
     pub(super) fn from_outcome(outcome: RunOutcome, path: PathBuf) -> Self {
         let folder = LeftFolder { in_memory: None, path, _keeper: None };
         let canceller = Canceller { control: ControlSocket::default() };
         Self { state: State::Known(Box::new(outcome)), folder, canceller }
     }
 
-    /// Returns whether the program works in a copy of its working folder, and the folder itself stays as it is.
+    /// Returns whether the program works in a copy of its working folder in memory, so that the folder itself does not
+    /// change.
     #[must_use]
     pub fn is_in_memory(&self) -> bool {
         self.folder.in_memory.is_some()
@@ -78,20 +79,20 @@ impl RunningProgram {
         self.canceller.clone()
     }
 
-    /// Waits until the program and all that it started are dead.
+    /// Waits until the program and all its processes are dead.
     ///
     /// # Errors
     ///
-    /// Faults of ours or of the host.
+    /// Errors of the grader or the host.
     pub fn wait(self) -> Result<RunOutcome, SandboxError> {
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
 
-    /// Waits as [`RunningProgram::wait`] does, and returns also the files that the program left in its working folder.
+    /// Waits like [`RunningProgram::wait`], and also returns the files that the program left in its working folder.
     ///
     /// # Errors
     ///
-    /// As for [`RunningProgram::wait`].
+    /// The errors of [`RunningProgram::wait`].
     pub fn wait_with_folder(mut self) -> Result<(RunOutcome, LeftFolder), SandboxError> {
         let (outcome, keeper) = match std::mem::replace(&mut self.state, State::Taken) {
             State::Supervised(supervised) => self.conclude(*supervised)?,
@@ -104,7 +105,7 @@ impl RunningProgram {
 
     fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<RestingKeeper>), SandboxError> {
         let answer = receive(&mut supervised.answers);
-        // Nobody commands a supervisor that has reported.
+        // A supervisor that has reported needs no more commands.
         drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
         let (event, stdout, stderr) = match answer {
             Ok(answer) => answer,
@@ -117,7 +118,7 @@ impl RunningProgram {
         let report = match event {
             Event::Done(report) => Ok(report),
             Event::Failed(failure) => Err(from_setup_failure(failure)),
-            Event::Ready { .. } => Err(SandboxError::Lost { how: "it spoke out of turn".into() }),
+            Event::Ready { .. } => Err(SandboxError::Lost { how: "it sent an unexpected message".into() }),
         };
         let keeper = supervised.host.rest(report.as_ref().ok());
         let report = report?;
@@ -141,29 +142,30 @@ impl RunningProgram {
     }
 }
 
-/// The working folder as a program left it. Every process of the run is dead, so that nothing changes there any more.
-/// The supervisor of the run serves others when this is dropped.
+/// The working folder after the program's end. Every process of the run is dead, so the folder no longer changes.
+/// Dropping it makes the run's supervisor available to others.
 #[derive(Debug, Default)]
 pub struct LeftFolder {
     in_memory: Option<OpenFolder>,
     path: PathBuf,
-    // Dropped last: the pages of a folder in memory count for its next run.
+    // Dropped last, because the pages of a folder in memory count for the keeper's next run.
     _keeper: Option<RestingKeeper>,
 }
 
 impl LeftFolder {
     /// Returns the folder, if the program worked in a copy in memory
-    /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise it is the job's folder on the disk.
+    /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise the files are in the job's folder on disk.
     #[must_use]
     pub fn in_memory(&self) -> Option<&OpenFolder> {
         self.in_memory.as_ref()
     }
 
-    /// Opens a regular file in it, of at most this length, with its length. No link is followed.
+    /// Opens a regular file of the folder, of at most `longest` bytes, and returns it with its length. Links are not
+    /// followed.
     ///
     /// # Errors
     ///
-    /// When something else, or nothing, is there.
+    /// If there is no such regular file.
     pub fn regular_file(&self, name: &str, longest: u64) -> Result<(File, u64), CollectError> {
         if let Some(folder) = &self.in_memory {
             return folder.regular_file(name, longest);
@@ -177,13 +179,13 @@ impl Drop for RunningProgram {
     fn drop(&mut self) {
         if let State::Supervised(supervised) = std::mem::replace(&mut self.state, State::Taken) {
             self.canceller.cancel();
-            // Stopped by us: its further actions do not matter.
+            // Stopped by the grader, so its further actions do not matter.
             let _ = self.conclude(*supervised);
         }
     }
 }
 
-/// Returns the supervisor's last message and the captured bytes behind it.
+/// Returns the supervisor's last message and the captured bytes after it.
 fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     let event = wire::receive(&mut *answers)?;
     let mut bytes = |length| wire::receive_bytes(&mut *answers, length);
@@ -194,17 +196,17 @@ fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     Ok((event, first, second))
 }
 
-/// Stops a program; harmless when it has ended.
+/// Stops a program; does nothing if the program has ended.
 #[derive(Debug, Clone)]
 pub struct Canceller {
     control: ControlSocket,
 }
 
 impl Canceller {
-    /// Kills the program and all that it started; [`RunningProgram::wait`] then returns `Cancelled`.
+    /// Kills the program and all its processes; [`RunningProgram::wait`] then returns `Cancelled`.
     pub fn cancel(&self) {
         if let Some(control) = self.control.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
-            // A supervisor that has ended needs no command.
+            // Writing fails if the supervisor has ended, which does not matter.
             let _ = control.write_all(&[COMMAND_CANCEL]);
         }
     }

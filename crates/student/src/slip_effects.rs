@@ -1,4 +1,4 @@
-//! The slips of a student in the quantities of the program: the parts of a sum, the weights of terms, the tests.
+//! The slips of a student in the program's quantities: the parts of a sum, the weights of terms, the tests.
 use super::{
     Mistake, StepMistake,
     author::Student,
@@ -7,30 +7,30 @@ use super::{
 use crate::assignments::states::{Edit, Slip, Term};
 use fosssim_num::vector::{Vec2, put};
 
-/// A particle's part of a quantity, and what its slips may depend on.
+/// A particle's part of a quantity, and the data on which its slips may depend.
 #[derive(Clone, Copy)]
 pub struct TermPart {
     pub term: Term,
     pub particle: usize,
     /// The first body of the pair.
     pub first: usize,
-    /// 0 for the first body of a pair, 1 and 2 for the others.
+    /// The role of the body: 0 for the first body of a pair, 1 and 2 for the others.
     pub role: usize,
-    /// The distance of the bodies.
+    /// The distance between the bodies.
     pub length: f64,
     /// Whether the part is subtracted.
     pub is_negative: bool,
 }
 
 impl TermPart {
-    /// Returns a particle's part of a quantity that knows no pairs; it is added.
+    /// Returns a particle's part of a quantity without pairs; the part is added.
     pub const fn from_term(term: Term, particle: usize) -> Self {
         Self { term, particle, first: particle, role: 0, length: 1.0, is_negative: false }
     }
 }
 
 impl Student {
-    /// Returns the slips in a quantity, or in one that it is part of.
+    /// Returns the slips in a quantity, or in a quantity of which it is a part.
     pub fn slips(&self, term: Term) -> impl Iterator<Item = Slip> {
         self.edits().filter(move |edit| edit.term.covers(term)).map(|edit| edit.slip)
     }
@@ -49,7 +49,7 @@ impl Student {
 }
 
 impl World {
-    /// Returns the weight of a numeric quantity in this student's program: its slips, except those of the whole.
+    /// Returns the weight of a numeric quantity in this student's program, by its slips except those of the whole.
     pub fn weight(&self, term: Term, length: f64) -> f64 {
         let own = self.student.edits().filter(|edit| edit.term == term);
         own.map(|edit| self.factor(edit.slip, 0, length)).product()
@@ -60,7 +60,7 @@ impl World {
         self.student.slips(term).map(|slip| self.factor(slip, particle, length)).product()
     }
 
-    /// Returns the factor that a slip puts to a quantity.
+    /// Returns the factor of a slip.
     fn factor(&self, slip: Slip, particle: usize, length: f64) -> f64 {
         let power = |base: f64, by: i8| {
             let product: f64 = (0..by.unsigned_abs()).map(|_| base).product();
@@ -79,7 +79,7 @@ impl World {
         }
     }
 
-    /// Adds a part to a sum over all particles, or subtracts it, as this student's program does.
+    /// Adds a part to a sum over all particles, or subtracts it, like this student's program.
     pub fn contribute(&self, sum: &mut [f64], part: TermPart, value: Vec2) {
         let TermPart { term, particle, first, role, length, is_negative } = part;
         let last = self.scene.particles.len() - 1;
@@ -93,7 +93,7 @@ impl World {
                 Slip::OnlyFirst if particle > 0 => return,
                 Slip::OneEnd if role == 2 => return,
                 Slip::Missing => return,
-                // With one statement for the whole force, the first part replaces the earlier value.
+                // With one statement for the whole force, the first part replaces the previous value.
                 Slip::Assigned => is_assigned = term != Term::SpringDamping || edit.term == term,
                 Slip::SameSign if role > 0 => value = -value,
                 Slip::XOnly => value.y = 0.0,
@@ -112,7 +112,7 @@ impl World {
         }
     }
 
-    /// Adds opposite forces to the gradient of two particles: `push` is the second one's part.
+    /// Adds opposite forces to the gradient of two particles; `push` is the second particle's part.
     pub fn contribute_opposite(&self, g: &mut [f64], term: Term, ends: (usize, usize), push: Vec2, length: f64) {
         let part = |role, particle| {
             let first = ends.0;
@@ -122,7 +122,7 @@ impl World {
         self.contribute(g, part(1, ends.1), push);
     }
 
-    /// Adds `h` times each rate to its particle's numbers.
+    /// Adds `h` times each rate to the numbers of its particle.
     pub fn advance(&self, term: Term, target: &mut Vec<f64>, h: f64, rates: &[f64]) {
         if self.student.slips(term).next().is_none() {
             *target = self.student.sum(target, h, rates);

@@ -1,32 +1,32 @@
-//! Several mistakes together: stages that are still empty, and rows that are added one by one.
+//! Finds several mistakes together: empty stages, and rows that are added one by one.
 //!
-//! A row is worth adding if with it the simulation of the wrong steps follows the log further. Only a set that
-//! reproduces everything, right steps included, and of which no row can be left out, explains anything.
-use super::{plausibility, resimulate::ApproachForm, shown::applicable, trials::Trials};
+//! A row is added if the simulation of the wrong steps then follows the log further. A set is an explanation only if it
+//! reproduces everything, including right steps, and no row can be omitted.
+use super::{applicable_rows::applicable, plausibility, resimulate::ApproachForm, trials::Trials};
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 use fosssim_student::{Area, Mistake, Row, RowKind};
 
-/// The greatest number of mistakes in a set, besides empty stages.
-const MOST: usize = 3;
-/// The greatest number of sets of empty stages that are tried.
-const MOST_SETS: usize = 1 << 8;
-/// Polynomials that may be computed in all; about a microsecond each.
-const WORK: u64 = 700_000;
+/// The maximum number of mistakes in a set, in addition to empty stages.
+const MAX_MISTAKES: usize = 3;
+/// The maximum number of sets of empty stages that are tried.
+const MAX_SETS: usize = 1 << 8;
+/// The maximum number of computed polynomials; each takes about a microsecond.
+const MAX_WORK: u64 = 700_000;
 
 /// Rows that reproduce a trace together.
 pub(super) struct SeveralRows {
     /// The rows: empty stages first, then in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
-    /// Rows that are equally good, for each of these rows.
+    /// For each row, the rows that are equally good.
     pub(super) same_as: Vec<Vec<&'static Row>>,
-    /// Rows that do without the empty stages.
+    /// Rows that explain the trace without the empty stages.
     pub(super) rivals: Vec<&'static Row>,
-    /// The wrong steps that were tried, all of them reproduced.
+    /// The number of tried wrong steps, all of which are reproduced.
     pub(super) samples: u64,
 }
 
-/// Returns the set of rows that reproduces all kept steps; `None` if none is found with at least two rows.
+/// Returns the set of rows that reproduces all kept steps; `None` if no set of at least two rows is found.
 pub(super) fn find_set(
     reference: &Reference<'_>,
     scene: &Scene,
@@ -38,7 +38,7 @@ pub(super) fn find_set(
         return search.together();
     }
     let mut found = search.starts().into_iter().find_map(|start| search.complete(start))?;
-    // A stage that is not written may look like a mistake in one that is.
+    // An unwritten stage may look like a mistake in a written one.
     if found.rows.iter().any(|row| is_empty_stage(row))
         && let Some(other) = search.complete(Vec::new())
         && other.rows.len() <= found.rows.len()
@@ -49,7 +49,7 @@ pub(super) fn find_set(
     Some(found)
 }
 
-/// Returns whether a row is work that was not done at all.
+/// Returns whether a row is an unwritten function.
 pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
     plausibility(row) == 0
 }
@@ -58,7 +58,7 @@ struct Search<'a> {
     scene: &'a Scene,
     trials: Trials<'a>,
     scan: &'a Scan,
-    /// Wrong steps on which rows are compared.
+    /// The wrong steps on which rows are compared.
     probes: Vec<&'a KeptStep>,
 }
 
@@ -79,10 +79,10 @@ impl<'a> Search<'a> {
 
     /// Adds rows to a set of empty stages until it reproduces everything.
     fn complete(&self, mut set: Vec<&'static Row>) -> Option<SeveralRows> {
-        // The rows that were as good as each row when that one was added.
+        // For each row of the set, the rows that were equally good when it was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);
-        while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MOST {
+        while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
             let (row, progress, others) = self.next(&set, best)?;
             set.push(row);
             best = progress;
@@ -109,14 +109,14 @@ impl<'a> Search<'a> {
         Some(SeveralRows { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
-    /// Finds mistakes of a program whose steps log states: none carries a step further, all together do. Functions that
-    /// are not written come first, then one mistake next to such functions, then two mistakes; none if two disjoint
-    /// sets do.
+    /// Finds mistakes of a program whose steps log states: no single mistake reproduces more of a step, but all
+    /// together do. Unwritten functions come first, then one mistake with such functions, then two mistakes; `None` if
+    /// two disjoint sets reproduce everything.
     fn together(&self) -> Option<SeveralRows> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
         let mut empty = subsets(&self.stages());
-        let most = empty.len().min(MOST_SETS);
+        let most = empty.len().min(MAX_SETS);
         empty.truncate(most);
         let explains = |set: &Vec<&'static Row>| self.explains(set);
         if let Some(rows) = empty.iter().filter(|set| set.len() > 1).find(|set| explains(set)) {
@@ -136,15 +136,14 @@ impl<'a> Search<'a> {
         let of_two = rows.iter().enumerate().flat_map(|(index, &one)| {
             rows[index + 1..].iter().filter(move |_| !is_empty_stage(one)).map(move |&other| vec![one, other])
         });
-        self.only(beside(1)).or_else(|| self.only(beside(2))).or_else(|| self.only(of_two))
+        self.unique_set(beside(1)).or_else(|| self.unique_set(beside(2))).or_else(|| self.unique_set(of_two))
     }
 
-    /// Returns the only one of these sets that reproduces everything, with rows that are equally good for one of its
-    /// own.
-    fn only(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
+    /// Returns the only set that reproduces everything, with rows that are equally good as one of its rows.
+    fn unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
-            if self.trials.exceed(WORK) {
+            if self.trials.exceed(MAX_WORK) {
                 return None;
             }
             if self.explains(&set) {
@@ -164,7 +163,7 @@ impl<'a> Search<'a> {
         is_told.then(|| SeveralRows { rows: first, same_as, rivals: Vec::new(), samples })
     }
 
-    /// Returns whether these rows reproduce everything, and none can be left out.
+    /// Returns whether the rows reproduce everything, and none can be omitted.
     fn explains(&self, set: &[&'static Row]) -> bool {
         let Some(probe) = self.probes.first() else { return false };
         self.trials.reproduced_share(&self.trials.program(set), probe) >= 1.0
@@ -173,8 +172,8 @@ impl<'a> Search<'a> {
             && self.count_confirmed(set).is_some()
     }
 
-    /// Returns sets of empty stages to begin with: the one that carries furthest, and those detections without which
-    /// the numbers of polynomials are those of whole passes, in case another mistake hides it.
+    /// Returns initial sets of empty stages: the set that reproduces most, and the detections without which the numbers
+    /// of polynomials are those of whole passes, in case another mistake hides it.
     fn starts(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.empty_stages()];
         let counts: Vec<usize> = self.scan.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
@@ -187,22 +186,22 @@ impl<'a> Search<'a> {
         }
         let mut sets = subsets(&sizes);
         sets.retain(|set| !set.is_empty() && fits(all - set.iter().map(|(_, size)| size).sum::<usize>()));
-        starts.extend(sets.into_iter().take(MOST).map(|set| set.into_iter().map(|(row, _)| row).collect()));
+        starts.extend(sets.into_iter().take(MAX_MISTAKES).map(|set| set.into_iter().map(|(row, _)| row).collect()));
         starts
     }
 
-    /// Returns the detections that the scene requires if they are left empty, and the number of polynomials that a pass
-    /// of each logs.
+    /// Returns the detections that the scene requires, as empty stages, and the number of polynomials in a pass of
+    /// each.
     fn sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
         let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomials());
         self.stages().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
-    /// Returns the smallest set of stages whose emptiness carries furthest; `None` if none does.
+    /// Returns the smallest set of empty stages that reproduces most; empty if none helps.
     fn empty_stages(&self) -> Vec<&'static Row> {
         let mut sets = subsets(&self.stages());
-        // One reading of the loop is enough, and a failsafe that is never called shows nothing.
+        // One variant of the loop is enough, and a failsafe that is never called shows nothing.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
             let loops = has(Mistake::ImpulsesEmpty) && has(Mistake::ImpulsesEmptySuccess);
@@ -211,7 +210,7 @@ impl<'a> Search<'a> {
         });
         let mut best = (self.progress(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
-            if self.trials.exceed(WORK / 2) {
+            if self.trials.exceed(MAX_WORK / 2) {
                 break;
             }
             let progress = self.progress(&set);
@@ -222,10 +221,9 @@ impl<'a> Search<'a> {
         best.1
     }
 
-    /// Returns the rows of empty stages that the scene can show. A detection that is not written hands over nothing, or
-    /// zeros.
+    /// Returns the rows of empty stages that show on the scene. An unwritten detection logs nothing, or zeros.
     fn stages(&self) -> Vec<&'static Row> {
-        // The approach of bodies that do not move is zero, too, but never the overlap before it.
+        // The approach of bodies that do not move is zero as well, but the overlap before it never is.
         let logs_zeros = self.scan.wrong.iter().any(|kept| {
             let are_zero = |list: &[f64]| list.iter().all(|&coefficient| coefficient == 0.0);
             let all: Vec<bool> = kept.records.end.polynomials.iter().map(are_zero).collect();
@@ -239,12 +237,13 @@ impl<'a> Search<'a> {
         applicable(self.scene).filter(is_asked).collect()
     }
 
-    /// Returns the row that carries the set furthest beyond `reached`, how far, and those that do as well.
+    /// Returns the row that extends the reproduced part beyond `reached` the most, the new share, and other rows that
+    /// reach the same.
     fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
         let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
-            if self.trials.exceed(WORK) {
+            if self.trials.exceed(MAX_WORK) {
                 return None;
             }
             let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
@@ -256,7 +255,7 @@ impl<'a> Search<'a> {
             }
         }
         let (progress, mut rows) = best;
-        // A stage that carries as far but makes right steps wrong is not in the set.
+        // A stage that reaches the same share but makes right steps wrong is not in the set.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
             self.scan.right.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)
@@ -265,7 +264,7 @@ impl<'a> Search<'a> {
         (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
     }
 
-    /// Returns whether no row can be left out.
+    /// Returns whether no row can be omitted.
     fn is_needed(&self, set: &[&'static Row]) -> bool {
         (0..set.len()).all(|index| {
             let without: Vec<&Row> =
@@ -274,12 +273,12 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// Returns how many wrong steps the set reproduces, if that is all of them and all right ones, within the time.
+    /// Returns the number of wrong steps if the set reproduces all of them and all right ones within the allowed work.
     fn count_confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.scan.right.iter().chain(&self.scan.wrong) {
-            if self.trials.exceed(2 * WORK) && samples > 0 {
+            if self.trials.exceed(2 * MAX_WORK) && samples > 0 {
                 break;
             }
             if self.trials.reproduced_share(&program, sample) < 1.0 {
@@ -291,7 +290,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Returns all sets of these rows, the smallest first.
+/// Returns all subsets, the smallest first.
 fn subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
     let of_bits = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
     let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(of_bits).collect();

@@ -1,7 +1,7 @@
-//! Calls whose polynomials are clearly right: by the reference's own coefficients, without their bounds.
+//! Accepts calls whose polynomials are clearly right, judged by the reference's own coefficients without bounds.
 use super::Follower;
 use crate::fair::{
-    compare::{MOST, Match, Similarity},
+    compare::{MAX_SAFE_SUM, Match, Similarity},
     formulas::extent,
 };
 use fosssim_model::{
@@ -19,15 +19,15 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// The comparison of the polynomials of a call that are clearly right.
-pub(super) type AtOnce = [Option<Match>; PairKind::MOST_POLYNOMIALS];
+/// The comparisons of a call's polynomials that are clearly right.
+pub(super) type AtOnce = [Option<Match>; PairKind::MAX_POLYNOMIALS];
 
-/// For each polynomial of a kind of pair, a sum of moduli above which it is more than round-off.
-pub(super) type Floors = ByKind<[f64; PairKind::MOST_POLYNOMIALS]>;
+/// For each polynomial of a kind of pair, the sum of moduli above which the polynomial exceeds round-off.
+pub(super) type Floors = ByKind<[f64; PairKind::MAX_POLYNOMIALS]>;
 
 impl Follower<'_> {
-    /// Returns the logged polynomials of a call that are clearly right: [`compare`](crate::fair::compare::compare)
-    /// accepts them, too.
+    /// Returns the logged polynomials of a call that are clearly right. [`compare`](crate::fair::compare::compare)
+    /// accepts them as well.
     #[inline]
     pub(super) fn right_at_once(
         &mut self,
@@ -36,8 +36,8 @@ impl Follower<'_> {
         index: usize,
         own: &[Polynomial],
     ) -> AtOnce {
-        let mut found = [None; PairKind::MOST_POLYNOMIALS];
-        // With wider bounds more is round-off.
+        let mut found = [None; PairKind::MAX_POLYNOMIALS];
+        // Wider bounds make more coefficients round-off.
         if self.sensitivity.is_some() || self.context.looks_closely {
             return found;
         }
@@ -61,7 +61,7 @@ impl Follower<'_> {
     }
 }
 
-/// Returns a bound above the round-off of the largest positions and displacements. Infinite, where that is not known.
+/// Returns an upper bound of the round-off for the largest positions and displacements, or infinity if it is unknown.
 fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
@@ -87,16 +87,16 @@ fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
         let number = BoundedValue { value: Magnitude(value), bound: Magnitude(bound) };
         Plane { x: number, y: number }
     };
-    // Only differences of positions matter, which are not larger than the spread; the bounds add what their moduli
-    // lack.
+    // Only differences of positions matter, and they are at most the spread. The bounds add the rest of the positions'
+    // moduli.
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
     let radii = BoundedValue { value: Magnitude(radius), bound: Magnitude(radius) };
-    let of = |lists: [&[BoundedValue<Magnitude>]; PairKind::MOST_POLYNOMIALS]| {
+    let of = |lists: [&[BoundedValue<Magnitude>]; PairKind::MAX_POLYNOMIALS]| {
         lists.map(|list| {
             let norm: f64 = list.iter().map(|c| c.bound.0).sum();
             let most = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
-            if norm < MOST { 1.01 * most } else { f64::INFINITY }
+            if norm < MAX_SAFE_SUM { 1.01 * most } else { f64::INFINITY }
         })
     };
     ByKind::from_fn(|kind| match kind {
@@ -134,7 +134,7 @@ mod tests {
         <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-3" nx="1" ny="2"/><halfplane px="2" py="0" nx="1" ny="0"/>
     </scene>"#;
 
-    /// By how much the floors are above round-off at least.
+    /// The minimum ratio of the floors to the round-off.
     struct Closest<'a>(&'a Scene, f64);
 
     impl Observer for Closest<'_> {
@@ -153,7 +153,7 @@ mod tests {
         }
     }
 
-    /// A polynomial above the floor is never round-off, and the floor is not much larger than necessary.
+    /// A polynomial above the floor always exceeds round-off, and the floor is not much larger than necessary.
     #[test]
     fn what_says_something_is_above_round_off() {
         let scene = scene(CROWD);

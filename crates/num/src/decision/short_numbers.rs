@@ -1,4 +1,4 @@
-//! Short numbers: when formulas over them are exact whatever the order of evaluation.
+//! Short numbers, for which formulas are exact in every order of evaluation.
 //!
 //! A double is an integer times a power of two. If all inputs of a formula are integer multiples of *one* power of two
 //! and the integers are short, every sum and product of the formula still fits into 53 bits and nothing is rounded.
@@ -18,11 +18,12 @@ pub fn all_exact(values: &[f64], bits: u32) -> bool {
             highest = highest.max(exponent + mantissa.ilog2().cast_signed() + 1);
         }
     }
-    // No value but zeros, or the span from the lowest set bit of any to above the highest.
+    // If all values are zero, there is no span. Otherwise the span is from the lowest set bit of any value to above the
+    // highest.
     highest == i32::MIN || i64::from(highest) - i64::from(lowest) <= i64::from(bits)
 }
 
-/// Returns `|value|` as mantissa times a power of two; the mantissa of zero is 0. For finite values.
+/// Returns `|value|` as mantissa and power of two; the mantissa of zero is 0. `value` must be finite.
 pub(super) fn split(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let exponent = i32::try_from((bits >> 52) & 0x7FF).unwrap_or(0);
@@ -40,7 +41,7 @@ mod tests {
         assert!(all_exact(&[0.0, -0.0], 0));
         assert!(all_exact(&[0.5, -3.0, 0.0, 7.25], 5));
         assert!(!all_exact(&[0.5, -3.0, 0.0, 7.25], 4));
-        // Each product is short, but not with the other.
+        // Each product is short, but not together with the other.
         assert!(!all_exact(&[1e9, 0.0625], 30));
         assert!(all_exact(&[f64::MAX, f64::MIN], 53));
         assert!(!all_exact(&[f64::MAX, 5e-324], 2000));

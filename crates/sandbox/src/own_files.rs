@@ -1,7 +1,7 @@
-//! The grader's own files, which no program that it runs may read or execute.
+//! Finds the grader's own files, which no program that it runs may read or execute.
 //!
-//! They hold the answers: the grader and its module for Python compute the original's traces, and the sample is a right
-//! submission. Landlock only ever allows, so that a folder with such a file in it is allowed entry by entry.
+//! The files contain the answers: the grader and its Python module compute the original's traces, and the sample is a
+//! right submission. Landlock can only allow files, so a folder that contains such a file is allowed entry by entry.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -12,22 +12,22 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// This very program.
+/// The path of the current program.
 const THIS: &str = "/proc/self/exe";
-/// The beginning of the sample's name.
+/// The prefix of the sample's name.
 const SAMPLE: &str = "fosssim-sample";
-/// The beginnings of the names of the grader's programs.
+/// The prefixes of the names of the grader's programs.
 const NAMES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
-/// The place where they are usually installed.
+/// The folders in which the programs are usually installed.
 const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
-/// The beginnings of the names of the module for Python and of the folder that `pip` makes next to it.
+/// The prefix of the names of the Python module and of the folder that `pip` creates next to it.
 const MODULE: &str = "fosssim";
-/// The place where the folders of Pythons are.
+/// The folders that contain Python installations.
 const PYTHONS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
-/// The place of modules in the folder of a Python.
+/// The folders of modules within a Python installation.
 const MODULES: [&str; 2] = ["dist-packages", "site-packages"];
 
-/// Returns whether the file's name is that of a grader's program.
+/// Returns whether the file has the name of a grader's program.
 pub(super) fn is_name(path: &Path) -> bool {
     path.file_name().is_some_and(is_named)
 }
@@ -40,12 +40,12 @@ fn begins(name: &OsStr, own: &str) -> bool {
     name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()))
 }
 
-/// Returns the entries of a folder; none if it can't be read.
+/// Returns the entries of a folder; none if it cannot be read.
 fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
     std::fs::read_dir(folder).into_iter().flatten().flatten()
 }
 
-/// Returns the files and folders of the module for Python, wherever `pip` puts them beneath these folders.
+/// Returns the files and folders of the Python module, wherever `pip` has put them below `pythons`.
 fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins(&entry.file_name(), kind));
     let pythons = pythons.iter().flat_map(|folder| entries(folder).filter(is_python));
@@ -55,15 +55,15 @@ fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     modules.map(|entry| entry.path()).collect()
 }
 
-/// Returns the files of [`files`] for this program and the one that supervises its runs, looked up once for all runs:
-/// `/usr/bin` alone may hold thousands.
+/// Returns the result of [`files`] for the current program and its supervisor. It is computed once for all runs,
+/// because `/usr/bin` alone may hold thousands of files.
 pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
     static KNOWN: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
     known.entry(supervisor.to_path_buf()).or_insert_with(|| files(&[Path::new(THIS), supervisor]).into()).clone()
 }
 
-/// Returns the resolved paths of these programs, of their siblings next to them, and of installed ones.
+/// Returns the resolved paths of `programs`, of the other programs next to them, and of installed ones.
 fn files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
     let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
@@ -80,14 +80,15 @@ fn files(programs: &[&Path]) -> Vec<PathBuf> {
     files
 }
 
-/// Returns whether a file of this length and digest is one of the grader's own programs. The sample may be graded in
-/// its own place (`itself`), to show that all works; a copy of it, or the grader in any form, is no submission.
+/// Returns whether a file with this length and digest is one of the grader's own programs. The sample may be graded at
+/// its own path (`itself`), to demonstrate grading; a copy of it, or the grader in any form, is not accepted as a
+/// submission.
 #[must_use]
 pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
     files(&[Path::new(THIS)]).into_iter().any(|path| {
         let Ok(metadata) = path.metadata() else { return false };
         let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE));
-        // Its name matters less than its content: the grader answers to other names, too.
+        // The content decides, because the grader may have other names.
         let shown = sample && (metadata.dev(), metadata.ino()) == itself;
         metadata.len() == length && !shown && digest_of(&path).is_some_and(|own| own == *digest)
     })
@@ -102,15 +103,15 @@ fn digest_of(path: &Path) -> Option<blake3::Hash> {
 /// A path that may be allowed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum AllowedPath {
-    /// The place with all beneath it.
+    /// A path with everything below it.
     Whole(PathBuf),
-    /// A folder that may only be listed, with all beneath it.
+    /// A folder that may only be listed, with everything below it.
     Listing(PathBuf),
 }
 
-/// Returns the rules that allow everything at and beneath `path` except `own` (resolved paths).
+/// Returns the rules that allow everything at and below `path` except `own` (resolved paths).
 ///
-/// Links beneath a folder that is split are left out: their targets are allowed in their own places, or not at all.
+/// Links below a split folder are left out; their targets are allowed at their own paths, or not at all.
 pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {
     let Ok(path) = path.canonicalize() else { return Vec::new() };
     let mut allowed = Vec::new();

@@ -1,4 +1,4 @@
-//! Finds mistakes that a program does not make, whatever its wrong traces suggest.
+//! Finds mistakes that a program does not make, although its wrong traces suggest them.
 use super::{
     Explanation, about::About, heads::explain_together, known::shows_within, naming::alternatives,
     not_finite::find_in_trace, sampling::Source, written::is_written,
@@ -7,13 +7,13 @@ use fosssim_model::{assignments::Assignment, scene::Scene};
 use fosssim_student::{Area, Student, find, trace_within};
 use std::{cell::Cell, collections::BTreeMap};
 
-/// The greatest number of traces that are simulated to see whether a mistake makes values that are not numbers.
-const MOST_ENDS: usize = 6;
+/// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
+const MAX_TRACES: usize = 6;
 
 /// The number of polynomials in a step after which a program counts as endless.
-const MOST_POLYNOMIALS: usize = 200_000;
+const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
-/// Keys that are named, of mistakes in code that a student of this milestone does not write.
+/// Returns the named keys of mistakes in code that a student of this milestone does not write.
 fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
@@ -28,23 +28,23 @@ fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<S
     named.into_iter().filter(|(_, is_own)| !is_own).map(|(key, _)| key).collect()
 }
 
-/// Returns whether each trace with values that are not numbers also has them when a program makes one of these mistakes
-/// alone.
+/// Returns whether, for each trace with values that are not finite, one of the likely mistakes alone leads to such
+/// values.
 fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
-    let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MOST_POLYNOMIALS) {
+    let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MAX_STEP_POLYNOMIALS) {
         Ok(trace) | Err((trace, _)) => !find_in_trace(scene, Source::whole(&trace)).is_empty(),
     };
-    let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MOST_ENDS);
+    let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
 }
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
 /// program does not make: they are in code that a student of this milestone does not write, or right scenes contradict
 /// them. The program was right there, and with the mistake it would not have been ([`shows`](super::known::shows)).
-/// Each integrator has a file of its own, so that only scenes with it show its mistakes. The key of values that are not
-/// numbers is included if the reported mistakes make such values themselves.
+/// Each integrator has its own file, so only scenes with it show its mistakes. The key of values that are not finite is
+/// included if the reported mistakes lead to such values.
 #[must_use]
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);

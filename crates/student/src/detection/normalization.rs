@@ -1,15 +1,15 @@
-//! Correct programs that divide polynomials by something positive, to get handy numbers.
+//! Correct programs that divide polynomials by a positive number, for simpler numbers.
 //!
-//! If a polynomial is zero except for round-off, the division makes it numbers of ordinary size.
+//! If a polynomial is zero except for round-off, the division gives it coefficients of ordinary size.
 use fosssim_model::sim::PairMotion;
 use fosssim_num::vector::Vec2;
 
 use crate::{Area, Mistake, author::Student};
 
-/// The parts of the assignment whose mistakes are made here.
+/// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Handover];
 
-/// Divides as this student does, if at all.
+/// Divides the polynomials like this student, if at all.
 pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) {
     let size: fn(&PairMotion, &[f64]) -> f64 = match student.mistake_in(HERE) {
         Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
@@ -25,7 +25,7 @@ pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) 
     }
 }
 
-/// Returns a number that makes quotients of one pair's formulas handy: the square of the relative motion, along the
+/// Returns a number that simplifies the quotients of one pair's formulas: the square of the relative motion, along the
 /// normal if there is one; for edges the square of the length.
 fn length_for_pair(motion: &PairMotion) -> f64 {
     let square = |v: Vec2| v.dot(&v);

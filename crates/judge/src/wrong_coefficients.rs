@@ -1,24 +1,24 @@
 //! Finds the coefficients of a wrong polynomial that a person would call wrong.
 //!
-//! Any positive factor is right, so the factor on which most coefficients agree is taken out first, 1 before all
-//! others. The original rescales by sums of moduli instead (oracle-behavior.md 6.2), where one wrong coefficient moves
-//! all the others; its own comparison stays with [`RescaledCoefficient`](super::finding::RescaledCoefficient).
+//! Any positive factor is right, so the coefficients are first divided by the factor on which most of them agree; 1 is
+//! preferred. The original rescales by sums of moduli instead (oracle-behavior.md 6.2), where one wrong coefficient
+//! moves all the others. That comparison is kept in [`RescaledCoefficient`](super::finding::RescaledCoefficient).
 
-/// Coefficients agree up to this share of themselves.
+/// The relative difference below which coefficients agree.
 const ALIKE: f64 = 1e-9;
 
 /// The share of the sum of moduli to which a value is known if its terms cancel.
 const FLOOR: f64 = 1e-13;
 
-/// Returns the positive factor of the trace's polynomial on which most coefficients agree; 1 where none is better than
-/// that. Both lists have the highest power first and are aligned at the constant term.
+/// Returns the positive factor of the trace's polynomial on which most coefficients agree, or 1 if no factor is better.
+/// Both lists have the highest power first and are aligned at the constant term.
 #[must_use]
 pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
         let holds = |power: &usize| coefficient(expected, *power) != 0.0 && agrees(expected, actual, *power, factor);
         (0..expected.len()).filter(holds).count()
     };
-    // One coefficient always agrees with its own ratio, which proves nothing.
+    // One coefficient always agrees with the factor computed from it, which proves nothing.
     let mut best = (agreeing(1.0).max(1), 1.0);
     for power in (0..expected.len().min(actual.len())).rev() {
         let ratio = coefficient(actual, power) / coefficient(expected, power);
@@ -32,7 +32,7 @@ pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
     best.1
 }
 
-/// Returns the powers of t whose coefficients differ with this factor, the highest first.
+/// Returns the powers of t whose coefficients differ with `factor`, the highest first.
 #[must_use]
 pub fn differing(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
     let powers = (0..expected.len().max(actual.len())).rev();
@@ -45,7 +45,7 @@ fn agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
     (coefficient(actual, power) - right).abs() <= ALIKE * right.abs() + FLOOR * factor * sum
 }
 
-/// Returns the coefficient of a power; 0 where the list does not reach it.
+/// Returns the coefficient of a power, or 0 if the list is too short.
 fn coefficient(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }

@@ -1,4 +1,4 @@
-//! Numbers of twice the usual precision, as a program with a wider type than double would use.
+//! Numbers with double the usual precision, as a program with a wider type than double would use.
 //!
 //! A number is an unevaluated sum of two doubles (T. J. Dekker, *A floating-point technique for extending the available
 //! precision*, Numerische Mathematik 18, 1971).
@@ -26,13 +26,13 @@ fn two_sum(a: f64, b: f64) -> WideNumber {
     WideNumber { high, low: (a - (high - part)) + (b - part) }
 }
 
-/// Returns `a + b` exactly, `a` being the larger in size.
+/// Returns `a + b` exactly; `a` must be the larger in size.
 fn quick_two_sum(a: f64, b: f64) -> WideNumber {
     let high = a + b;
     WideNumber { high, low: b - (high - a) }
 }
 
-/// Splits a double into two of half the length.
+/// Splits a double into two halves.
 fn split(a: f64) -> (f64, f64) {
     let shifted = 134_217_729.0 * a;
     let high = shifted - (shifted - a);

@@ -1,4 +1,4 @@
-//! The memory that the machine can spare for working folders.
+//! Decides whether the machine has enough memory for a working folder.
 
 use std::{
     path::{Path, PathBuf},
@@ -8,16 +8,16 @@ use std::{
 
 use super::machine;
 
-/// Returns whether a folder of this number of bytes may be in memory. The machine and our own control groups must have
-/// room for as many folders as there can be runs at one time, and as much again for the programs.
+/// Returns whether a folder of `bytes` bytes may be in memory. The machine and the grader's control groups must have
+/// room for one folder per simultaneous run, and as much again for the programs.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static RUNS: OnceLock<u64> = OnceLock::new();
     let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
     memory_left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
-/// Returns the memory that the machine and our groups have left, as it was at most a moment ago: the kernel needs
-/// longer to add it up than to start a small program.
+/// Returns the remaining memory of the machine and the grader's groups. The value may be slightly outdated, because the
+/// kernel needs longer to compute it than to start a small program.
 fn memory_left() -> Option<u64> {
     const MOMENT: Duration = Duration::from_millis(500);
     static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
@@ -37,7 +37,7 @@ fn available() -> Option<u64> {
     machine::bytes_of(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// A control group that this process is in and that may have a limit.
+/// A control group of this process that may have a limit.
 #[derive(Debug, PartialEq, Eq)]
 struct LimitedGroup {
     limit: PathBuf,
@@ -45,14 +45,14 @@ struct LimitedGroup {
 }
 
 impl LimitedGroup {
-    /// Returns `None` without a limit.
+    /// Returns the remaining memory of the group; `None` without a limit.
     fn memory_left(&self) -> Option<u64> {
         let number = |path: &Path| std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
         Some(number(&self.limit)?.saturating_sub(number(&self.usage)?))
     }
 }
 
-/// Returns the groups around this process, in either version's files.
+/// Returns the control groups of this process, in the files of both versions.
 fn groups() -> &'static [LimitedGroup] {
     static GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
     GROUPS.get_or_init(|| {
