@@ -1,4 +1,4 @@
-//! The parts of this program that the drop-in for the original needs: pictures.
+//! The part of this program that the drop-in for the original needs: pictures.
 use crate::original::{NO_PICTURE_FOLDER, Pictures, Services};
 use crate::{
     cli::output::Folder,
@@ -9,13 +9,13 @@ use crate::{
 use anyhow::Result;
 use std::path::Path;
 
-/// The folder of `-g 1`.
+/// The folder for the pictures of `-g 1`.
 const PNGS: &str = "pngs";
 
-/// Width and height of the pictures.
+/// The width and the height of the pictures, in pixels.
 const SIDE: u32 = 512;
 
-/// This program.
+/// The implementation of pictures by this program.
 pub(super) struct Program;
 
 impl Services for Program {
@@ -43,7 +43,7 @@ impl Services for Program {
     }
 }
 
-/// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, as SVG in a folder of choice.
+/// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, or as SVG in a chosen folder.
 struct PictureFolders {
     painter: Painter,
     raster: Raster,

@@ -1,4 +1,4 @@
-//! One run: load the scene, step, write the trace.
+//! One run of the sample: load the scene, step, write the trace.
 use std::{
     fs::File,
     hint::black_box,
@@ -13,7 +13,7 @@ use super::{
 use crate::student::{self, StepLog, Student, World};
 use anyhow::Context;
 
-/// The status of a run that the course's program would never have ended.
+/// The exit status of a run that the course's program would never have ended.
 const NEVER_ENDS: u8 = 3;
 
 type Output = Trace<Box<dyn Write>>;

@@ -30,47 +30,48 @@ use std::{
     time::Instant,
 };
 
-/// Name of the scene's copy in the working folder, and of the trace.
+/// The name of the scene's copy in the working folder.
 const SCENE_FILE: &str = "scene.xml";
 const TRACE_FILE: &str = "trace.bin";
 
-/// A fault of ours or of the machine is tried so often before it is reported.
+/// The number of attempts before an error of the grader or the machine is reported.
 const ATTEMPTS: u32 = 2;
 
 /// The way in which scenes are run.
 #[derive(Clone, Copy)]
 pub struct Runner<'a> {
-    /// The sandbox.
+    /// The sandbox for the runs.
     pub backend: &'a Backend,
     /// The command line; `{program}`, `{scene}` and `{trace}` are replaced.
     pub run: &'a [String],
     /// Limits of each run.
     pub limits: &'a RunLimits,
-    /// The rule books that judge.
+    /// The rule books for judging.
     pub rules: Rules,
-    /// The hints of the result: those of the reader who sees most, which is staff.
+    /// The hints for staff, who see most; the result contains no more.
     pub hints: Hints,
     /// The hints for students about the scene.
     pub student_hints: Hints,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
-    /// The source of working folders for its runs.
+    /// The source of working folders for the runs.
     pub folders: &'a Folders,
-    /// Stops everything from outside.
+    /// The switch that stops all runs.
     pub cancellation: &'a Cancellation,
-    /// The folder for traces on which the grader itself failed; made when it is needed.
+    /// The folder for traces on which the grader failed; created when it is needed.
     pub faults: &'a Place,
-    /// The place for the trace if it is not accepted, on request.
+    /// The file for the trace if it is not accepted, if requested.
     pub trace: Option<&'a Place>,
-    /// Draws and keeps cards of traces that are not simply right, on request.
+    /// The drawing and storage of cards for traces that are not simply right, if requested.
     pub cards: Option<Cards<'a>>,
-    /// Adds up the processor time of runs, for `--timings`.
+    /// The sums of the runs' processor times, for `--timings`.
     pub timings: Option<&'a Timings>,
 }
 
 impl Runner<'_> {
-    /// Runs `program` on a scene, in a working folder of its own that is removed afterwards, and judges it. After a
-    /// fault of ours it tries once more, then the fault is the verdict. `on_step` gets the number of every judged step.
+    /// Runs `program` on a scene in a new working folder, which is removed afterwards, and judges the trace. After an
+    /// error of the grader or the machine it tries again; a second error is the verdict. `on_step` receives the number
+    /// of every judged step.
     #[must_use]
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
@@ -104,7 +105,7 @@ impl Runner<'_> {
         }
         watch.end(RunPart::Start);
         let (trace, trace_bytes) = self.trace_in(&left)?;
-        // Not within the judging, which may panic: its trace is put aside then.
+        // The trace is kept outside of judging, which may panic; it is saved for developers then.
         let mut kept = KeptTrace::new(LONGEST);
         let mut rulings = StepRulings::default();
         let mut told = ToldSteps(on_step);
@@ -165,10 +166,11 @@ impl Runner<'_> {
         Ok(result)
     }
 
-    /// Runs `program` on a scene as for grading, and hands its trace over unjudged, at most `keep` bytes of it.
+    /// Runs `program` on a scene as for grading, and returns at most `keep` bytes of its trace, unjudged.
     ///
     /// # Errors
-    /// Faults of ours or of the machine, in words.
+    ///
+    /// An error of the grader or the machine, as text.
     pub fn collect(
         &self,
         program: &Path,
@@ -184,8 +186,8 @@ impl Runner<'_> {
         Ok((kept, outcome))
     }
 
-    /// Opens the trace that a program left, with its length: a regular file, read up to the limit. Anything else there
-    /// is no trace.
+    /// Opens the trace that a program left, and returns its length: a regular file, read up to the limit. Any other
+    /// entry counts as no trace.
     fn trace_in(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
         match left.regular_file(TRACE_FILE, u64::MAX) {
             Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),
@@ -196,7 +198,7 @@ impl Runner<'_> {
         }
     }
 
-    /// Starts `program` on a scene, in a working folder of its own that lives as long as the result.
+    /// Starts `program` on a scene, in a new working folder that lives as long as the result.
     fn start(
         &self,
         program: &Path,
@@ -216,7 +218,7 @@ impl Runner<'_> {
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }
 
-    /// Judges the trace of a program. What the judge did not want is read all the same, to be kept.
+    /// Judges the trace of a program. Reads the rest of the trace too, so that it is kept whole.
     fn judge_trace(
         &self,
         program: &StagedProgram,
@@ -229,7 +231,7 @@ impl Runner<'_> {
             fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
-        // The judge has read an error here, if there is one.
+        // If reading fails here, the judge has met the same error.
         let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
         judged
     }
@@ -280,7 +282,7 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the result of a judged run with its explanations, or what panicked.
+/// Returns the result of a judged run with its explanations, or the panic.
 fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
     let explain = |look: Look| {
@@ -293,7 +295,7 @@ fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneR
     explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
 }
 
-/// Reports the progress of judging.
+/// Reports the progress of judging, step by step.
 struct ToldSteps<'a>(&'a mut dyn FnMut(u32));
 
 impl Progress for ToldSteps<'_> {

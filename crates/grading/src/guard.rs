@@ -1,7 +1,8 @@
-//! Faults of our own: a panic while one scene is judged, explained or reported must not end a class's grading.
+//! Catches panics of the grader: a panic while one scene is judged, explained or reported must not end a class's
+//! grading.
 //!
 //! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of
-//! that scene. Nothing is repaired: the data of the work are dropped.
+//! that scene. The data of the failed work are dropped.
 use std::{
     any::Any,
     cell::{Cell, RefCell},
@@ -9,7 +10,7 @@ use std::{
     sync::Once,
 };
 
-/// A panic in words: the message and where in the source it was.
+/// The text of a panic: the message and its place in the source.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Fault(String);
@@ -19,12 +20,13 @@ thread_local! {
     static CAUGHT: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Does some work, and returns a panic in it as a fault, which is not printed.
+/// Calls `work`, and returns a panic in it as a fault, which is not printed.
 ///
-/// The caller must drop what the work was changing, as after any error: its state is unknown.
+/// The caller must drop the data that `work` changed, because their state is unknown.
 ///
 /// # Errors
-/// When the work panics.
+///
+/// When `work` panics.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     listen();
     let outer = GUARDED.replace(true);
@@ -48,7 +50,7 @@ fn listen() {
     });
 }
 
-/// Returns the words of a panic, on one line.
+/// Returns the message of a panic, on one line.
 fn message(payload: &(dyn Any + Send)) -> String {
     let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned());

@@ -1,5 +1,5 @@
-//! Finds the milestone of a program by the scenes that it accepts: a starter library ends with an exit code at an
-//! integrator or a collision type that it does not know, whatever its student wrote.
+//! Infers the milestone of a program from the scenes that it accepts. A starter library ends with an exit code if it
+//! does not know an integrator or a collision type, whatever its student wrote.
 use super::{config::RunLimits, execute::Runner, task::SceneTask};
 use fosssim_model::{
     assignments::{Assignment, Integrator},
@@ -8,14 +8,13 @@ use fosssim_model::{
 use fosssim_sandbox::RunEnd;
 use std::{path::Path, time::Duration};
 
-/// The time on the processor and on the clock for two steps of two bodies, of which a program needs some milliseconds.
+/// The limits of processor time and wall time for two steps of two bodies, which take a program some milliseconds.
 const LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if there is none,
-/// or if the program writes no trace at all. The program is run six times, on two bodies that do not meet.
+/// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if no milestone
+/// fits, or if the program never writes a trace. The program is run six times, on two bodies that do not meet.
 ///
-/// # Errors
-/// Faults of ours or of the machine, in words.
+/// # Errors An error of the grader or the machine, as text.
 pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
     let [cpu, wall] = LIMITS;
     let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
@@ -24,7 +23,7 @@ pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignme
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
         let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
-        // A program that crashes has accepted the scene.
+        // A program that crashes counts as accepting the scene.
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
     };
     let mut integrators = Vec::new();
@@ -51,7 +50,7 @@ pub fn lacks(found: Assignment, expected: Assignment) -> bool {
         || expected.collisions.iter().any(|one| !found.collisions.contains(one))
 }
 
-/// Makes a scene of two steps with this element for collisions.
+/// Creates a scene of two steps with the given integrator and collision element.
 fn task(integrator: Integrator, collision: &str) -> Result<SceneTask, String> {
     let xml = format!(
         "<scene><duration time=\"0.02\"/><integrator type=\"{}\" dt=\"0.01\"/>{collision}\

@@ -1,7 +1,8 @@
-//! Decides when the rest of a submission is not run any more: a class must not wait for one program that never ends.
+//! Decides when the rest of a submission is skipped: a class must not wait for one program that never ends.
 //!
-//! Pure functions of the results so far, in the suite's order. Further results can only move the end forward, so a
-//! decision while scenes still run holds, and in the end the same scenes are left out whatever the number of jobs.
+//! The functions are pure, and depend only on the results so far, in the suite's order. Further results can only move
+//! the end forward. A decision while scenes still run is therefore final, and the same scenes are skipped whatever the
+//! number of jobs.
 use super::{
     config::Patience,
     result::{NotRunReason, Reason, SceneResult},
@@ -10,8 +11,8 @@ use super::{
 };
 use std::time::Duration;
 
-/// Returns the result of a scene that is left out. All but the last reason are the submission's own doing, so that such
-/// a scene counts as those that were the end.
+/// Returns the result of a skipped scene. All reasons but the last are the submission's own fault, so such a scene
+/// counts like the scenes that caused the end.
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
@@ -21,8 +22,8 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
 }
 
-/// Returns the first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long
-/// it took.
+/// Returns the first scene that is skipped, with the reason. `known` has the verdict and the duration of every finished
+/// scene.
 pub(super) fn end(
     patience: &Patience,
     fail_fast: bool,
@@ -53,8 +54,8 @@ pub(super) fn end(
     None
 }
 
-/// Returns whether a program with this verdict was stopped at a limit. An endless loop reaches the first of several:
-/// time, memory, or the size of its output.
+/// Returns whether a program with this verdict was stopped at a limit. An endless loop reaches one of several limits
+/// first: time, memory, or the size of its output.
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }

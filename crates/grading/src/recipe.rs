@@ -1,4 +1,4 @@
-//! The way from a submission to a program that can be run: a program, an archive with one, or sources to build.
+//! The steps from a submission to a program that can be run: a program, an archive with one, or sources to build.
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
@@ -21,16 +21,16 @@ use std::{
     path::Path,
 };
 
-/// The way from submissions to programs.
+/// The way in which submissions become programs.
 #[derive(Clone, Copy)]
 pub struct Recipe<'a> {
     /// The program's name in folders and archives.
     pub program: &'a str,
     /// The build of sources, if the suite has one.
     pub build: Option<&'a BuildStep>,
-    /// The place where they are built.
+    /// The sandbox in which sources are built.
     pub backend: &'a Backend,
-    /// Stops a build.
+    /// The switch that stops a build.
     pub cancellation: &'a Cancellation,
 }
 
@@ -57,9 +57,9 @@ impl Recipe<'_> {
         Ok(StagedProgram::unusable(path, why))
     }
 
-    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not ours: a link that leads
-    /// elsewhere, perhaps to another submission, is rejected, and so is a file that is `noted` to be another's. Without
-    /// such a file, an archive in the folder is the submission.
+    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not trusted. A link that
+    /// leads elsewhere is rejected, and so is a file that is `noted` as another's. Without such a file, an archive in
+    /// the folder is the submission.
     ///
     /// # Errors
     /// As for [`Recipe::file`].
@@ -86,8 +86,7 @@ impl Recipe<'_> {
 
     /// Stages the build of the sources in a folder, or in the only archive that it holds.
     ///
-    /// # Errors
-    /// Faults of ours or of the machine.
+    /// # Errors An error of the grader or the machine.
     pub fn folder(&self, path: &Path) -> Result<StagedProgram, String> {
         match (self.build, only_archive(path, true)?) {
             (None, _) => self.file(path),
@@ -100,12 +99,12 @@ impl Recipe<'_> {
     fn stage_opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
-            // The copy shows why the file can't be read.
+            // The copy reports why the file can't be read.
             _ => copy_program(file, path, self.backend),
         }
     }
 
-    /// Unpacks an archive, and stages its contents: sources for a build, or else the program.
+    /// Unpacks an archive, and stages its contents: sources for a build, otherwise the program.
     fn stage_unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
         let folder = TemporaryFolder::make("upload").map_err(at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
@@ -128,7 +127,7 @@ impl Recipe<'_> {
     }
 }
 
-/// Returns the kind of an open file by its first bytes, which are read again later.
+/// Returns the kind of an open file by its first bytes, and rewinds the file.
 fn kind_of(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
     file.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
@@ -139,7 +138,7 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
 /// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload.
 /// `is_alone` requires that the folder holds only the archive.
 fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
-    /// A folder with more entries is none of a platform's.
+    /// The maximum number of entries of a learning platform's folder.
     const MOST: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
     let mut names = opened.names().map_err(at(folder))?;
@@ -148,7 +147,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
         return Ok(None);
     }
     let archive = |name: &OsString| {
-        // The owner of a file with several names is unknown.
+        // A file with several names has no known owner.
         let (mut file, _) = opened.regular_file(name.to_str()?, LARGEST_FOLDER).ok()?;
         matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };

@@ -1,4 +1,4 @@
-//! Makes a grade of the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
+//! Makes a grade from the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
 //! together.
 use super::{
     config::{Credit, MOST_POINTS, Marking},
@@ -13,12 +13,12 @@ use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 use std::time::Duration;
 
-/// Shares a group's points evenly among its scenes and adds up the points reached. The results come with whether they
-/// were taken from an earlier run.
+/// Shares a group's points evenly among its scenes and adds up the points reached. Each result comes with whether it
+/// was reused from an earlier run.
 ///
 /// With [`Credit::Steps`] a scene with a complete trace and a wrong answer gets the share of its steps without a
 /// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be
-/// accepted. Scenes on which the grader failed, or which it did not come to run, have no points, nor has their group.
+/// accepted. Scenes on which the grader failed, or which it did not run, have no points; neither has their group.
 #[must_use]
 pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
     let each = worth(marking.points, results.len());
@@ -48,8 +48,8 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
     }
 }
 
-/// Returns the grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no
-/// sandbox, no time. `is_timed` decides whether speed counts.
+/// Returns the grade of the results of all scenes, in the plan's order, without build, sandbox and times. `is_timed`
+/// decides whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
@@ -66,7 +66,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         verdict,
         points,
         max_points,
-        // No program was run that could reveal a hidden scene.
+        // No program was run, so no output can reveal a hidden scene.
         shows_output: true,
         refuted: find_refuted(plan, &groups),
         groups,
@@ -84,8 +84,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     }
 }
 
-/// Returns the results as those of one submission: if one of its traces shows anything, an empty trace is wrong like
-/// others, and does not mean that nothing is written.
+/// Returns the results as those of one submission: if any trace has entries, an empty trace counts as wrong, not as
+/// unwritten.
 fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {
@@ -101,13 +101,13 @@ fn with_speed(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
     speed.map_or(scenes, |speed| Some(scenes? + speed.points?))
 }
 
-/// Returns the worth of one scene in a group of this number of scenes.
+/// Returns the points of one scene, in a group of `scenes` scenes.
 #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
 fn worth(points: f64, scenes: usize) -> f64 {
     if scenes == 0 { 0.0 } else { points / scenes as f64 }
 }
 
-/// Returns the points of a group. The full score is exact: sums of rounded shares would make 99.99999 of 100.
+/// Returns the points of a group. The full score is exact, because a sum of rounded shares could be 99.99999 of 100.
 fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     match all_accepted && !scenes.is_empty() {
         true => Some(points),
@@ -115,13 +115,13 @@ fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     }
 }
 
-/// Returns the share of its points that a scene gets.
+/// Returns the share of a scene's points that its result gets.
 fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
     Some(match (credit, result.verdict) {
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
         (Credit::All, _) => f64::from(u8::from(all_accepted)),
         (_, Verdict::Accepted) => 1.0,
-        // A trace can be wrong with all its steps right: in its first record, or by small errors that add up.
+        // A wrong trace can have only right steps, if its first record is wrong or small errors add up.
         (Credit::Steps, Verdict::WrongAnswer) => {
             let right = result.right_steps.min(result.steps.saturating_sub(1));
             f64::from(right) / f64::from(result.steps.max(1))
@@ -130,8 +130,8 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
     })
 }
 
-/// Returns a contradiction in a grade: points, or a verdict, that do not follow from the verdicts of its scenes. A
-/// grade from elsewhere is checked before its points are believed.
+/// Returns a contradiction in a grade, whose points or verdict do not follow from its scenes. A grade from another
+/// program is checked before its points are used.
 #[must_use]
 pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
@@ -146,7 +146,7 @@ pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     }
 }
 
-/// Returns whether a group's points and verdict are what some credit makes of its scenes' verdicts.
+/// Returns whether a group's points and verdict follow from its scenes' verdicts by some kind of credit.
 fn follows(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
     let max_points = group.max_points_of_scenes();
@@ -182,7 +182,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .collect();
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(WITNESSES);
-    // Bundled scenes are in their milestone's folder; for others, their contents decide.
+    // Bundled scenes are in their milestone's folder; the milestone of others follows from their contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted_keys(whose, &wrong, &right)

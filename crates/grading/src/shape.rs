@@ -1,6 +1,6 @@
-//! The shape of a suite file: its keys, and the kind of value of each.
+//! The shape of a suite file: its keys, and the type of each value.
 //!
-//! Finds all faults together, and removes wrong parts, so that the others can still be checked.
+//! The check finds all faults together, and removes wrong parts, so that the others can still be checked.
 use super::near::closest;
 use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
@@ -12,21 +12,21 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-/// A problem and where it is, in bytes.
+/// A problem and its byte range in the file.
 pub(super) type Problem = (Range<usize>, String);
 
-/// The points that a group may have.
+/// The range of a group's points.
 pub const MOST_POINTS: Range<f64> = 0.0..1e6;
 
-/// The rule for partial success.
+/// The rule for partial credit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Credit {
-    /// The group's points times the share of accepted scenes.
+    /// The group's points are multiplied by the share of accepted scenes.
     Scenes,
-    /// Within each scene, the share of steps without a finding.
+    /// Each scene counts by its share of steps without a finding.
     Steps,
-    /// All or nothing.
+    /// All scenes have to be accepted.
     All,
 }
 
@@ -34,12 +34,12 @@ pub enum Credit {
 enum ValueKind {
     Text,
     Texts,
-    /// A number in this range; if it is out of range, the message names its table first.
+    /// A number in a range; the message about a number out of range begins with the table's name.
     Number(&'static str, Range<f64>),
-    /// A whole number that is not negative.
+    /// A whole number of at least 0.
     Whole,
     Flag,
-    /// One word of these.
+    /// A word of a list.
     Choice(&'static [&'static str]),
     Table(&'static [Key]),
     Tables(&'static [Key]),
@@ -50,7 +50,7 @@ struct Key(&'static str, ValueKind, bool);
 
 const HINTS: &[&str] = &["none", "where", "what", "full"];
 
-/// The keys of the milestones, in the order of the course.
+/// The names of the milestones, in the order of the course.
 const MILESTONES: [&str; Assignment::ALL.len()] = {
     let mut keys = [""; Assignment::ALL.len()];
     let mut index = 0;
@@ -61,8 +61,7 @@ const MILESTONES: [&str; Assignment::ALL.len()] = {
     keys
 };
 
-/// Declares the tables of the file: each with its keys, and the values that are read from them once their shape has
-/// been checked.
+/// Declares the tables of the file: the keys of each, and the struct that is read after the shape has been checked.
 macro_rules! tables {
     ($($raw:ident $keys:ident { $($key:ident: $value:ty = $kind:expr, $is_required:literal;)+ })+) => {
         $(
@@ -133,7 +132,7 @@ tables! {
     }
 }
 
-/// The tables to which a misplaced key may belong.
+/// The tables in which a misplaced key may belong.
 const PLACES: [(&str, &[Key]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
@@ -143,7 +142,7 @@ const PLACES: [(&str, &[Key]); 6] = [
     ("the top of the file", SUITE),
 ];
 
-/// Returns the table without its faulty parts, all faults, and whether every line could be read.
+/// Returns the table without its faulty parts, all problems, and whether every line could be parsed.
 pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut problems: Vec<Problem> =
@@ -152,16 +151,16 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
     if is_readable {
         clean(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
-        // Nobody knows the meaning of a broken line.
+        // The meaning of a broken line is unknown.
         table.get_mut().clear();
     }
     (table, problems, is_readable)
 }
 
-/// Takes out of a table what does not belong there.
+/// Removes unknown keys and values of the wrong type from a table, and reports them.
 fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
     for Key(name, _, required) in keys {
-        // A misspelt key is reported at its place.
+        // A misspelled key is reported at its position.
         let meant = |key: &Spanned<Cow<'_, str>>| {
             key.get_ref() == name || closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
         };
@@ -182,7 +181,7 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
     *table = entries.collect();
 }
 
-/// Returns whether a value is of its kind.
+/// Returns whether a value is of the given type.
 fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
     let is = value.get_ref().type_str();
@@ -240,7 +239,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
     }
 }
 
-/// Returns a number's value, rounded if it is long; none for a hexadecimal number, which no reader accepts.
+/// Returns a number's value, rounded if it is long; `None` for a hexadecimal number, which no reader accepts.
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
@@ -251,18 +250,18 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// Returns `an integer`, `a string`.
+/// Returns the type with its article, such as `an integer`.
 fn article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// Returns the message for a word that is not in the list.
+/// Returns the message for a word that is not in a list.
 fn not_among(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
     format!("{name} \"{word}\" is not known: there are {}{}", list_words(words, "and"), hint.unwrap_or_default())
 }
 
-/// Returns `"a", "b" and "c"`.
+/// Returns a list as text, such as `"a", "b" and "c"`.
 fn list_words(words: &[&str], last: &str) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match &quoted[..] {
@@ -271,7 +270,7 @@ fn list_words(words: &[&str], last: &str) -> String {
     }
 }
 
-/// Returns the message for a key that does not belong here.
+/// Returns the message for an unknown key in a table.
 fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);

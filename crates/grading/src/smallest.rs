@@ -1,4 +1,5 @@
-//! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
+//! The search for the smallest scene for each cause of a program's mistakes, which runs the program in the sandbox on
+//! ever smaller scenes.
 use super::{
     config::{Hints, RunLimits},
     execute::Runner,
@@ -21,45 +22,45 @@ use std::{
     time::Duration,
 };
 
-/// Scenes that are tried for one cause, the smallest first.
+/// The maximum number of scenes that are tried for one cause, the smallest first.
 const MOST_SCENES: usize = 4;
-/// Scenes with more bodies are not made smaller: their traces are too long to be kept whole.
+/// The maximum number of bodies of a scene that is reduced; traces of larger scenes are too long to be kept whole.
 pub const MOST_BODIES: usize = 400;
-/// Causes without a name of which a scene is made.
+/// The maximum number of causes without a name for which a scene is made.
 const MOST_UNNAMED: usize = 2;
 
-/// The limits where the smallest scenes are only the end of a report.
+/// The limits for smallest scenes at the end of a report.
 pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
 
-/// The time for a cause that has no name, or a quarter of the limit if that is more.
+/// The minimum time for a cause without a name; a quarter of the limit if that is more.
 const UNNAMED: Duration = Duration::from_secs(5);
 
-/// The time on the processor and on the clock of a run.
+/// The limits of processor time and wall time of a run.
 const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns limits with no more time than a program needs on a small scene. A trace that is complete at its end is read
-/// all the same.
+/// Returns limits with no more time than a program needs on a small scene. A trace that is complete at the time limit
+/// is still read.
 #[must_use]
 pub fn impatient(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
 }
 
-/// Describes a smallest scene, with these hints for its students.
+/// A function that describes a smallest scene, with the hints for its students.
 pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene, Hints) -> SmallestScene + Sync + 'a;
 
-/// The most that may be spent on one cause.
+/// The limits of the work for one cause.
 #[derive(Debug, Clone, Copy)]
 pub struct ShrinkLimits {
-    /// Runs of the program.
+    /// The maximum number of runs of the program.
     pub runs: u32,
-    /// The processor time of these runs, and of this process meanwhile.
+    /// The maximum processor time of these runs and of this thread.
     pub time: Duration,
 }
 
 /// A cause, and the scenes on which a program is wrong because of it.
 #[derive(Debug, Clone)]
 pub struct WrongScenes<'a> {
-    /// The reason, if it is known before a run is judged.
+    /// The cause, if it is known before a run is judged.
     pub reason: Option<WrongReason>,
     /// The scenes.
     pub scenes: Vec<&'a SceneTask>,
@@ -68,11 +69,11 @@ pub struct WrongScenes<'a> {
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
 pub struct ShrunkScene {
-    /// The reason why the program is wrong on the scene.
+    /// The cause of the wrong result.
     pub reason: WrongReason,
-    /// The scene that it is made of.
+    /// The name of the original scene.
     pub origin: String,
-    /// The scene.
+    /// The reduced scene.
     pub small: SmallScene,
     /// The program's run on the scene.
     pub seen: Observation,
@@ -83,14 +84,13 @@ pub struct ShrunkScene {
 pub struct WrongScene<'a> {
     /// The scene.
     pub task: &'a SceneTask,
-    /// The explanations of its trace.
+    /// The explanations of the program's trace.
     pub explanations: &'a [Explanation],
-    /// The way the program ended.
+    /// The end of the program.
     pub ended: &'a RunEnd,
 }
 
-/// Returns the causes of wrong scenes: the likely mistakes, the ways in which the program does not end well, and a few
-/// of the scenes that nothing explains.
+/// Returns the causes of wrong scenes: the likely mistakes, the kinds of failing ends, and a few unexplained scenes.
 #[must_use]
 pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<WrongScenes<'a>> {
     let mut left: Vec<WrongScene<'a>> = wrong.to_vec();
@@ -129,29 +129,28 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
 
 /// Runs a program on ever smaller scenes.
 pub struct Shrinker<'a> {
-    /// The way in which the program is run.
+    /// The runner of the program.
     pub runner: Runner<'a>,
-    /// The program.
+    /// The path of the program.
     pub program: &'a Path,
-    /// The milestone whose programs' scenes are made.
+    /// The milestone that decides the form of the scenes.
     pub assignment: Assignment,
-    /// The most that may be spent on one cause.
+    /// The limits of the work for one cause.
     pub limits: ShrinkLimits,
-    /// The wrong step with which the search begins; by default the first ones.
+    /// The wrong step with which the search begins; `None` for the first ones.
     pub step: Option<u32>,
 }
 
 impl Shrinker<'_> {
-    /// Returns the smallest scene for a cause; `None` if neither a step nor some steps show it again.
+    /// Returns the smallest scene for a cause; `None` if no part of a scene reproduces it.
     ///
-    /// # Errors
-    /// Faults of ours or of the machine, in words.
+    /// # Errors An error of the grader or the machine, as text.
     pub fn smallest(&self, cause: &WrongScenes<'_>) -> Result<Option<ShrunkScene>, String> {
         let mut tasks = cause.scenes.clone();
         tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let spent = Cell::new(Duration::ZERO);
-        // Other threads may grade; their time does not count.
+        // Only this thread's time counts, because other threads may grade.
         let begun = processor_time(TimeOf::Thread);
         let time = || spent.get() + processor_time(TimeOf::Thread).saturating_sub(begun);
         for task in tasks.into_iter().take(MOST_SCENES) {
@@ -167,7 +166,7 @@ impl Shrinker<'_> {
             let all = self.limits.time;
             let limit = if reason.is_unnamed() { all.min(UNNAMED.max(all / 4)) } else { all };
             let is_over = || time() >= limit || self.runner.cancellation.is_cancelled();
-            // At best the scene alone distinguishes the mistake from all others.
+            // In the best case, the scene distinguishes the mistake from all others.
             let search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over);
             let (mut found, mut held) = search(true)?;
             if found.is_none() {
@@ -175,12 +174,12 @@ impl Shrinker<'_> {
             }
             let Some(small) = found else { continue };
             let seen = match self.runner.cancellation.is_cancelled() {
-                // No program runs any more: the earlier result must suffice.
+                // The time is used up, so the earlier result must suffice.
                 true => held,
                 false => Some(self.observe(&small.scene, &spent)?),
             };
             let Some(seen) = seen else { continue };
-            // A program that does another thing each time shows nothing.
+            // The result of a program that is not reproducible is dropped.
             if reason.holds(&small.scene, &seen) {
                 return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen }));
             }
@@ -188,7 +187,7 @@ impl Shrinker<'_> {
         Ok(None)
     }
 
-    /// Reduces one of these scenes, and returns it with the program's run on it.
+    /// Reduces one of the scenes, and returns it with the program's run on it.
     fn reduce(
         &self,
         (reason, leads): (&WrongReason, bool),
@@ -226,7 +225,7 @@ impl Shrinker<'_> {
     }
 }
 
-/// Returns the steps of a run that are wrong; of a program that did not end well, the one behind its last record.
+/// Returns the wrong steps of a run; if the program did not end well, the step after its last record.
 fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());

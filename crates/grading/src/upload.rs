@@ -6,13 +6,13 @@ use super::{
 use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
-/// The greatest number of entries that are named.
+/// The maximum number of entries that a message names.
 const NAMED: usize = 6;
-/// The greatest number and depth of entries searched for a program in another place.
+/// The maximum number of entries that are searched for a program in another place, and their maximum depth.
 const LOOKED_AT: u32 = 2000;
 const DEEPEST: u32 = 3;
 
-/// Returns why there is no program to run: the expected name, and what there is instead.
+/// Returns the reason why there is no program: the expected name, and the contents of the folder.
 pub(super) fn explain_missing_program(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => list_contents(program, &opened),
@@ -42,7 +42,7 @@ fn entry(folder: &OpenFolder, name: &OsStr) -> String {
     names::printable(name) + slash
 }
 
-/// Returns the path of a file of this name beneath a folder, the shallowest of each folder first.
+/// Returns the path of a file with a name below a folder; files in a folder come before those in its subfolders.
 fn deeper(folder: &OpenFolder, wanted: &OsStr, at: &Path, depth: u32, budget: &mut u32) -> Option<std::path::PathBuf> {
     let mut names = folder.names().ok()?;
     names.sort();

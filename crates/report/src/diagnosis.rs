@@ -1,4 +1,4 @@
-//! The report of `explain`: the likely mistakes of a program, trace by trace and all together.
+//! The report of `explain`: the likely mistakes of a program, for each trace and for all traces.
 use super::{
     case::Case,
     explain::{ExplanationView, lines},
@@ -16,21 +16,21 @@ use std::fmt::Write;
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
 const SCHEMA: u32 = 3;
 
-/// The whole report.
+/// The report on all traces.
 #[derive(Debug, Clone, Default)]
 pub struct Diagnosis {
     /// The traces, in the order of the request.
     pub cases: Vec<Case>,
-    /// With several traces, the mistakes that explain them together, the most frequent first.
+    /// The mistakes that explain several traces together, the most frequent first; empty for a single trace.
     pub common: Vec<Explanation>,
-    /// The common properties of the scenes in which the program crashes or runs into a limit.
+    /// The common properties of the scenes in which the program crashes or exceeds a limit.
     pub located: Option<LocatedFailure>,
     /// The smallest scene for each cause, if requested.
     pub smallest: Vec<SmallestScene>,
 }
 
 impl Diagnosis {
-    /// Returns whether nothing is wrong.
+    /// Returns whether the fair rules accept every trace.
     #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.cases.iter().all(|case| case.accepted)
@@ -137,7 +137,7 @@ fn render_mistakes(explanations: &[Explanation], style: Style) -> String {
 }
 
 view! {
-    /// The likely mistakes of the program that left one or several traces.
+    /// The likely mistakes of the program that wrote the traces.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct DiagnosisView<'a> from diagnosis: Diagnosis {
         /// The version of this shape.
@@ -145,16 +145,16 @@ view! {
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.is_accepted(),
-        /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words;
-        /// null if nothing is known.
+        /// The common contents of the scenes in which the program crashes or exceeds a limit, as text; null if there
+        /// are none.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
-        /// With several traces, the mistake that explains most of the wrong traces.
+        /// With several traces, the mistake that explains most of the wrong traces; otherwise null.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
         /// With several traces, up to three mistakes that explain the wrong traces together; the first is `common`.
         likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
         /// The traces, in the order of the request.
         traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),
-        /// The smallest scene for each cause, where a program is at hand.
+        /// The smallest scene for each cause, if the program can be run.
         smallest: Vec<SmallestView> = diagnosis.smallest.iter().map(SmallestView::from).collect(),
     }
 }
@@ -165,13 +165,13 @@ view! {
     struct CaseView<'a> from case: Case {
         /// The trace's scene.
         scene: &'a str = &case.scene,
-        /// The trace, or the program that left it.
+        /// The path of the trace, or of the program that wrote it.
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
-        /// The way the program ended, where it did not end well.
+        /// The end of the program, if it did not end well.
         note: Option<&'a str> = case.note.as_deref(),
-        /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
+        /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,

@@ -1,14 +1,14 @@
-//! Problems of a scene drawn under the lines that they are about.
+//! Problems of a scene, each drawn below the line that it is about.
 use fosssim_model::scene::{Problem, Problems, Severity};
 
-/// At most this many characters of a source line are shown.
+/// The maximum number of characters of a source line that are shown.
 const WIDEST: usize = 100;
 
-/// No more bytes than these on either side of a place can be shown: a character takes four at most. Lines may be
-/// megabytes long.
+/// The maximum number of bytes that can be shown on either side of a place: a character takes at most four bytes, and
+/// lines may be megabytes long.
 const REACH: usize = 4 * WIDEST + 8;
 
-/// Returns everything that is wrong with a rejected scene: a head line, then each problem with its source line.
+/// Returns the problems of a rejected scene: a head line, then each problem with its source line.
 ///
 /// `name` is the scene's name in messages, `source` its bytes.
 #[must_use]
@@ -25,7 +25,7 @@ pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
     text
 }
 
-/// Returns the warnings about an accepted scene; nothing when there is none.
+/// Returns the warnings about an accepted scene; empty if there are none.
 #[must_use]
 pub fn warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
     list.iter().map(|problem| block(name, source, problem) + "\n").collect()
@@ -51,13 +51,13 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let after = escape_line(&source[end..line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
-        // There is nothing to point at: an empty file, or an empty line.
+        // Nothing can be marked in an empty file or an empty line.
         if !advice.is_empty() {
             text += &format!("    = {}\n", advice.trim_start());
         }
         return text;
     }
-    // Long lines are cut on both sides of the place.
+    // Cut long lines on both sides of the place.
     let cut = before.chars().count().saturating_sub(WIDEST / 2);
     let (dots, indent) = if cut > 0 { ("...", 3) } else { ("", 0) };
     let before: String = before.chars().skip(cut).collect();
@@ -74,13 +74,13 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     text
 }
 
-/// Returns the end of the line behind `at`, or of what can be shown of it.
+/// Returns the end of the line after `at`, or of the part that can be shown.
 fn line_end(source: &[u8], at: usize) -> usize {
     let to = source.len().min(at + REACH);
     source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }
 
-/// Returns a piece of the source as a terminal may show it: one column per character, no control characters.
+/// Returns a part of the source in printable form: one column per character, without control characters.
 fn escape_line(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\r');

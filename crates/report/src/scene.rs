@@ -1,4 +1,4 @@
-//! Scenes as a list: a line on each.
+//! The list of scenes, with one line each.
 use super::{
     number::format_count,
     style::{Look, Style},
@@ -7,7 +7,7 @@ use super::{
 use crate::foreign::one_line;
 use fosssim_model::scene::Scene;
 
-/// Returns one line per scene: its name under `asset:`, how large it is, and the first sentence of its description.
+/// Returns one line per scene: its name with `asset:`, its size, and the first sentence of its description.
 #[must_use]
 pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     let width = scenes.iter().map(|(name, _)| wrap::columns(name)).max().unwrap_or(0);
@@ -20,8 +20,8 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     scenes.iter().map(line).collect()
 }
 
-/// Returns `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: kinds without a member are left out, and the milestones are
-/// those whose programs can run it.
+/// Returns the size of a scene, such as `3 particles, 1 edge, 20 steps, for T1M2, T1M3`. Kinds of objects that the
+/// scene lacks are left out; the milestones are those whose programs can run the scene.
 fn describe_size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),

@@ -1,6 +1,6 @@
-//! The number of steps that are right or wrong, in words that every report shares.
+//! The number of right or wrong steps, as text that every report shares.
 
-/// Returns words such as `all 15 steps are right`, `the only step is right`. `count` writes numbers.
+/// Returns text such as `all 15 steps are right` or `the only step is right`. `count` formats numbers.
 #[must_use]
 pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
     match steps {
@@ -10,8 +10,8 @@ pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
     }
 }
 
-/// Returns words such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong`, `the only step is wrong`. `count` writes
-/// numbers.
+/// Returns text such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong` or `the only step is wrong`. `count`
+/// formats numbers.
 #[must_use]
 pub fn describe_wrong(wrong: u64, steps: u32, count: fn(u64) -> String) -> String {
     match (wrong, steps) {

@@ -1,4 +1,4 @@
-//! The smallest scene on which a program is still wrong for the same reason: the scene, the values that differ, and the
+//! The smallest scene on which a program is still wrong for the same reason, with the differing values and the
 //! computation by hand.
 use crate::{
     explain::{ExplanationView, lines},
@@ -10,7 +10,7 @@ use crate::{
 };
 use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestScene};
 
-/// Returns the size and the origin of the scene, in a sentence.
+/// Returns the size and the origin of the scene, as a sentence.
 pub(crate) fn title(small: &SmallestScene) -> String {
     let SmallestScene { bodies, origin, .. } = small;
     let bodies = match bodies {
@@ -23,7 +23,7 @@ pub(crate) fn title(small: &SmallestScene) -> String {
     format!("The smallest scene: {bodies}, {steps} (made from {origin} in {runs}{end})")
 }
 
-/// Renders the report for people. `file` is the one with the scene, if it was written.
+/// Renders the report for people. `file` is the scene's file, if it was written.
 #[must_use]
 pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
     let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
@@ -38,7 +38,7 @@ pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
     parts.join("\n")
 }
 
-/// Returns why the program is wrong on it, a line each.
+/// Returns the reasons why the program is wrong on the scene, one per line.
 fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
     let SmallestScene { note, first, explanations, .. } = small;
     let told = lines(&explanations[..explanations.len().min(1)], style);
@@ -60,26 +60,26 @@ view! {
     /// The smallest scene on which a program is still wrong for the same reason.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct SmallestView from small: SmallestScene {
-        /// The scene that it was made from.
+        /// The name of the original scene.
         origin: String = plain(&small.origin),
-        /// The scene, as a file.
+        /// The content of the scene file.
         scene: String = small.xml.clone(),
-        /// The command that finds the scene again.
+        /// The command that reproduces the scene.
         again: String = plain(&small.again),
-        /// The number of runs of the program.
+        /// The number of times that the program was run.
         runs: u32 = small.runs,
-        /// Whether no single attempt makes it smaller; false if the search was stopped.
+        /// Whether no single change makes the scene smaller; false if the search was stopped early.
         minimal: bool = small.is_minimal,
-        /// The way the program ended, where it did not end well.
+        /// The end of the program, if it did not end well.
         note: Option<String> = small.note.as_deref().map(plain),
-        /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
+        /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
-        /// Likely mistakes, the cause first.
+        /// The likely mistakes, beginning with the cause.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
-        /// The computation by hand, of the first wrong step; null if hints hide it.
+        /// The computation of the first wrong step by hand; null if hints hide it.
         by_hand: Option<String> = small.by_hand.clone(),
     }
 }

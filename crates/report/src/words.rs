@@ -1,5 +1,4 @@
-//! Results of scenes, in words. Results travel as values up to here; every report takes its sentences from this
-//! place.
+//! Results of scenes, as sentences. All reports take their sentences from this module.
 pub mod explanation;
 
 mod located;
@@ -19,14 +18,14 @@ use fosssim_judge::{FindingKind, PairWords, Unreadable};
 use fosssim_mistakes::together::likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
-/// The words for a trace without the lists that its scene requires.
+/// The text about a trace without the lists that its scene requires.
 pub const STATES_ONLY: &str =
     "the trace holds only positions and velocities, like that of a program without collisions";
 
-/// The exit code of shells and loaders that did not find their program.
+/// The exit code of shells and loaders that cannot find their program.
 const NOT_FOUND: i32 = 127;
 
-/// Returns one sentence about the result of a scene.
+/// Returns a sentence about the result of a scene.
 #[must_use]
 pub fn summary(result: &SceneResult) -> String {
     match &result.reason {
@@ -44,7 +43,7 @@ pub fn summary(result: &SceneResult) -> String {
     }
 }
 
-/// Returns how the program ended, and at which limit, but not how far it came: these words are equal in many scenes.
+/// Returns the end of the program, with its limit but without its progress, so that the text is equal in many scenes.
 pub(crate) fn ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summary(result) };
     let ended = result.ended.as_ref().map(RunEnd::to_string).unwrap_or_default();
@@ -56,7 +55,7 @@ pub(crate) fn ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// Returns further lines about a scene: the first difference, counts, damage, where a trace is kept.
+/// Returns further lines about a scene: the first difference, counts, damage, and the file of the trace.
 #[must_use]
 pub fn details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
@@ -90,7 +89,7 @@ pub fn details(result: &SceneResult) -> Vec<String> {
     lines
 }
 
-/// Returns the fault of the submission itself, and so of each of its scenes.
+/// Returns the fault of the whole submission, which is also that of each of its scenes.
 #[must_use]
 pub fn describe_unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
@@ -101,13 +100,12 @@ pub fn describe_unfit(grade: &Grade) -> Option<String> {
     })
 }
 
-/// Returns the text for a program of another milestone than the suite's.
+/// Returns the text for a program of a milestone other than the suite's.
 fn milestone(other: Assignment) -> String {
     format!("it looks like a program of {}, which is not the milestone of this suite", other.definition().title)
 }
 
-/// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, if hints allow
-/// it.
+/// Returns the text for a submission that logs nothing in any scene, with the unwritten parts if hints allow it.
 fn describe_unwritten(grade: &Grade) -> String {
     let scenes = format_count(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
@@ -117,7 +115,7 @@ fn describe_unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// Returns one sentence why not everything is accepted; nothing if everything is.
+/// Returns a sentence on the reason why a grade is not fully accepted; `None` if it is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
@@ -130,7 +128,7 @@ pub fn reason(grade: &Grade) -> Option<String> {
     Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summary(first)))
 }
 
-/// Returns the end of a build, in words.
+/// Returns the end of a build, as text.
 #[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
@@ -182,8 +180,8 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// Returns the progress of a program's trace. The number of records that a crash has lost is unknown: some may have
-/// been waiting to be written.
+/// Returns the progress of a program's trace. The number of records that a crash lost is unknown, because some may have
+/// been buffered.
 fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
@@ -240,7 +238,7 @@ fn describe_failure(failure: &Failure) -> String {
     }
 }
 
-/// Returns where a trace diverges from the reference, if hints allow it.
+/// Returns the place where a trace first differs from the reference, if hints allow it.
 pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
@@ -257,10 +255,11 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     }
 }
 
-/// Returns `counts: wrong coefficient (12), missed collision (3)`, if there is more than the first finding.
+/// Returns the counts of findings, such as `counts: wrong coefficient (12), missed collision (3)`, if there is more
+/// than the first finding.
 fn describe_counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
-    // A kind that is found in damaged records only has no example, and proves nothing about the program.
+    // A kind that occurs only in damaged records has no example, and proves nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
     let list: Vec<String> = FindingKind::ALL
         .into_iter()

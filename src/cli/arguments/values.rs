@@ -6,7 +6,7 @@ use clap::{
 };
 use std::str::FromStr;
 
-/// Returns a count that can't be zero.
+/// Parses a number of at least one.
 pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
 }
@@ -14,23 +14,23 @@ pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static
 /// The format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum TextOrJson {
-    /// For people.
+    /// Text for people.
     Text,
-    /// For programs; one JSON object.
+    /// One JSON object, for programs.
     Json,
 }
 
-/// A word of the command line, the library's value that it means, and its help.
+/// A word of the command line, the value that it stands for, and its help.
 type Word<T> = (&'static str, T, &'static str);
 
-/// Reads the words of a value.
+/// Returns a parser for one of several words.
 fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(words.iter().map(|(word, _, help)| PossibleValue::new(*word).help(*help))).try_map(
         |found| words.iter().find(|(word, ..)| *word == found).map(|(_, value, _)| *value).ok_or("no such word"),
     )
 }
 
-/// Returns the choice of rule books.
+/// Returns the parser for the rule books.
 pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
     one_of(&[
         ("parity", Rules::Parity, "The original's rules alone"),
@@ -47,7 +47,7 @@ pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
     ])
 }
 
-/// Returns the hints of reports.
+/// Returns the parser for the hints of reports.
 pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("none", Hints::None, "The verdict only"),
@@ -57,7 +57,7 @@ pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
     ])
 }
 
-/// Returns the hints of an explanation: at least the likely mistake.
+/// Returns the parser for the hints of an explanation, which show at least the likely mistake.
 pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
     one_of(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),
@@ -65,13 +65,13 @@ pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
     ])
 }
 
-/// Returns a milestone of the course.
+/// Returns the parser for a milestone of the course.
 pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
         .try_map(|key| Assignment::from_key(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
-/// Returns the reader of a page.
+/// Returns the parser for the reader of a page.
 pub(in crate::cli) fn reader() -> impl TypedValueParser<Value = Audience> {
     one_of(&[
         ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),

@@ -1,4 +1,4 @@
-//! `detect`: one detection call in detail.
+//! The command `detect`, which shows one detection call in detail.
 use crate::files::Identity;
 use crate::{
     cli::{
@@ -45,7 +45,7 @@ fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, in
     })
 }
 
-/// Prints the report on a decision of `simple` handling.
+/// Prints the report on a decision of `simple` collision handling.
 fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity]) -> Result<()> {
     if arguments.format == DetectFormat::Svg {
         bail!("a picture shows polynomials, and this scene's detection has none: use --format text or json");
@@ -59,7 +59,7 @@ fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity])
     })
 }
 
-/// Writes a report where it is wanted.
+/// Writes a report to the requested output.
 fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
     let text = text(if target.is_some() { Style::Plain } else { console::style() });
@@ -70,7 +70,7 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
     }
 }
 
-/// Returns the pair whose numbers were typed.
+/// Returns the pair from the typed numbers.
 fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
                            a scene (--scene, --step, --pair)";
@@ -143,7 +143,7 @@ fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
 /// The records of a step in a trace.
 struct TracedStep {
     before: State,
-    /// The mid record's state; if the scene has none, the state before the step's end.
+    /// The mid record's state; if the scene has no mid records, the state before the step's end.
     mid: State,
     end: Frame,
     name: String,

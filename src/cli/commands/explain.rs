@@ -1,4 +1,4 @@
-//! `explain`: the likely mistakes of the program that left a trace, or of a program at hand.
+//! The command `explain`: the likely mistakes of a program, from its trace or by running it.
 use super::{
     probes::{Drawing, ExaminedProgram, ProgramUnderTest, case},
     shrink,
@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
     Ok(if diagnosis.is_accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Runs a program on scenes that make every term of every formula visible, and on those that are named.
+/// Runs a program on scenes that make every term of every formula visible, and on the given ones.
 fn explain_program(
     program: &Path,
     scenes: &[PathBuf],
@@ -83,7 +83,7 @@ fn trace_on_scene(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> R
     }
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
-    // Bytes behind the last step are of interest only where they can't be read.
+    // The bytes after the last step matter only if they can't be read.
     let _ = io::copy(&mut (&mut trace.reader).take(LONGEST as u64), &mut io::sink());
     trace.ensure_not_failed()?;
     Ok((case, card))

@@ -1,4 +1,4 @@
-//! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
+//! The command `grade`, which runs programs on a suite in the sandbox, stores every result, and writes the reports.
 use super::{
     closer::Closer,
     compare,
@@ -55,10 +55,10 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The default folder for results when several submissions are graded.
+/// The default folder for results of several submissions.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
 
-/// The folder for traces on which the grader itself failed, without a folder for results.
+/// The folder for traces on which the grader failed, if there is no folder for results.
 const FAULTS: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     Ok(code)
 }
 
-/// Grades, and adds up the times of runs. The sandbox's processes have ended when this returns.
+/// Grades, and adds up the times of runs. The sandbox's processes have ended when this function returns.
 fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let mut plan = plan::find(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
@@ -85,7 +85,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
     let reports = reports(&arguments.format)?;
-    // Read before anything is written: it may be the folder for results.
+    // Read the earlier grading before anything is written, because it may be in the folder for results.
     let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
     if arguments.traces {
         return traces::run(arguments, plan, &reports, &earlier);
@@ -108,10 +108,10 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     refuse_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
-    // Before any output is touched, whose own handler would end the program immediately.
+    // Install the signal handler before an output is opened, whose own handler would end the program immediately.
     let cancellation = cancelled_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
-        // An output that can't be written is reported before the work is done, not after.
+        // An output that can't be written is reported before the work is done.
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
@@ -143,7 +143,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
-/// The data that stay the same between two gradings of `--watch`.
+/// The data that are the same in all gradings of `--watch`.
 struct GradingSession<'a> {
     arguments: &'a Arguments,
     plan: &'a Plan,
@@ -151,13 +151,13 @@ struct GradingSession<'a> {
     cancellation: &'a Cancellation,
     folder: Option<PathBuf>,
     pages: Option<Pages>,
-    /// Whether scenes of the suite were left out on purpose.
+    /// Whether scenes of the suite were left out on request.
     is_part: bool,
-    /// The part of the submissions that this is, if it is a part.
+    /// The shard of the submissions, if `--shard` is given.
     sharding: Option<Sharding>,
-    /// The entries that are no submissions.
+    /// The entries that are not submissions.
     passed_over: Vec<PassedOver>,
-    /// The sum of the processor time of runs, on request.
+    /// The sums of the runs' processor times, for `--timings`.
     times: &'a Timings,
 }
 
@@ -186,7 +186,7 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Prints which results come from earlier runs, and how to continue a grading that was stopped.
+    /// Prints the number of results from earlier runs, and the way to continue a grading that was stopped.
     fn say_what_was_kept(&self, grades: &[Grade]) {
         let taken: usize = grades.iter().map(Grade::taken_over).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
@@ -203,13 +203,13 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Returns the place for the trace of a scene that is not accepted, if traces are kept.
+    /// Returns the file for the trace of a scene that is not accepted, if traces are kept.
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
     }
 
-    /// Returns the grades, and what kept the rest from being graded or kept.
+    /// Returns the grades, and the error that stopped the grading or the storing of results, if any.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
@@ -247,7 +247,7 @@ impl GradingSession<'_> {
                 let _ = log_error.set(error);
             }
         };
-        // Called as the original, this program does what that does.
+        // This program acts as the original if it is called by that name.
         let reference = std::env::current_exe().ok();
         let grader = Grader {
             plan: self.plan,
@@ -279,7 +279,7 @@ impl GradingSession<'_> {
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
     }
 
-    /// Returns the counter of scenes for `--progress`: those that the reader of the pages sees.
+    /// Returns the counter of scenes for `--progress`, which counts those that the reader of the pages sees.
     fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
         let sees_all = self.arguments.reader == Audience::Staff;
         let groups = self.plan.groups.iter();
@@ -291,12 +291,12 @@ impl GradingSession<'_> {
             .with_context(|| format!("cannot write the progress to {}", file.display()))
     }
 
-    /// Returns the entries that are no submissions. For shards, `merge` reports them.
+    /// Returns the entries that are not submissions; for shards, `merge` reports them.
     fn passed_over(&self) -> &[PassedOver] {
         if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
 
-    /// Writes the reports and, into the folder, the files that a batch ends with.
+    /// Writes the reports and the files of the output folder.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
@@ -308,7 +308,7 @@ impl GradingSession<'_> {
         results.write(reports, |grades| self.text(grades, submissions))
     }
 
-    /// Renders the report for a terminal: of a class a table, and its result.
+    /// Renders the report for a terminal; for a class, a table and its result.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
@@ -317,7 +317,7 @@ impl GradingSession<'_> {
         text(grades, self.passed_over(), shown, HARDEST, Some(&closer))
     }
 
-    /// Grades, waits for a change of any program, grades again; until interrupted.
+    /// Grades whenever a program changes, until interrupted.
     fn watch(
         &self,
         submissions: &[Submission],
@@ -334,7 +334,7 @@ impl GradingSession<'_> {
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::complain("waiting for a change; Ctrl-C ends\n");
-            // A file is graded when it has stopped changing: a linker writes in several steps.
+            // A file is graded after it has stopped changing, because a linker writes in several steps.
             let mut last = seen.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
@@ -351,7 +351,7 @@ impl GradingSession<'_> {
     }
 }
 
-/// Signs of a change of a submission: the newest time of a change below it, and its size.
+/// Returns the newest modification time below each submission, and its size, to detect changes.
 fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),
@@ -372,8 +372,8 @@ fn find_newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
-/// Writes a submission's log: its build, and the verdict, the reasons and the harmless form of the output of each run.
-/// A fault of the submission itself is written once.
+/// Writes a submission's log: its build, and for each run the verdict, the reason and the output without control
+/// characters. A fault of the whole submission is written once.
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let mut text = String::new();
     if let Some(build) = &grade.build {

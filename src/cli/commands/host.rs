@@ -1,4 +1,4 @@
-//! `doctor`, `selftest` and `demo`: what this machine can do.
+//! The commands `doctor`, `selftest` and `demo`, which show what this machine can do.
 use super::pages::{self, Pages};
 use crate::{
     cli::{
@@ -23,7 +23,7 @@ use std::{
     path::Path,
 };
 
-/// More bytes than this program ever has.
+/// The maximum size of this program, in bytes.
 const LARGEST_PROGRAM: u64 = 1 << 30;
 
 /// The default mistake of the demo's wrong sample.
@@ -60,7 +60,7 @@ pub(super) fn doctor() -> Result<u8> {
 pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
     for id in mistake.split(',') {
-        // A variant is right: a program that makes it would be a right submission.
+        // A variant is right, so a program with it would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
             let meant = near::meant(id, student::all_rows().map(|row| row.id));
             bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");
@@ -105,7 +105,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             return Ok(exit::INTERRUPTED);
         }
         verdicts.push(grades.iter().map(|grade| grade.verdict).max());
-        // The last one stays: the wrong sample's.
+        // Keep the last grade, which is that of the wrong sample.
         last = grades.into_iter().next();
     }
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
@@ -121,7 +121,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     }
 }
 
-/// Writes the sample as a program of its own, with a mistake that it always makes.
+/// Writes the sample as a separate program with a fixed mistake.
 fn write_sample(mistake: &str, program: &Path) -> Result<()> {
     let this = Path::new("/proc/self/exe").canonicalize().context("where is this program?")?;
     let bytes = files::read(&this, LARGEST_PROGRAM).with_context(|| format!("cannot read {}", this.display()))?;
@@ -139,7 +139,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         backend = backend.without(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
-    // The programs run as another user when this is root, who has to reach them.
+    // If this process is root's, the programs run as another user, who has to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
@@ -168,7 +168,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     Ok(if broken == 0 && table.count_held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the sandbox, or an error that names what is missing.
+/// Returns the sandbox, or an error that names the missing layers.
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {

@@ -1,4 +1,4 @@
-//! `merge`: puts the shards of a grading together.
+//! The command `merge`, which joins the shards of a grading.
 use super::{
     ending::{exit_code, text},
     last_run::LastRun,
@@ -25,13 +25,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Folders of a grading whose files have names of their own, or of their submission's.
+/// The folders of a grading whose files have unique names, or that of their submission.
 const FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
 
-/// Folders within folders are followed so far.
+/// The maximum depth of folders that are copied.
 const DEEPEST: usize = 4;
 
-/// A larger file is none that a grading leaves.
+/// The maximum size of a file that a grading writes, in bytes.
 const LARGEST_FILE: u64 = 2 << 30;
 
 pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let names = &first.common.submissions;
     refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
-    // Held to the end: no other process works in this folder.
+    // The lock is held to the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in FOLDERS {
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     Ok(exit_code(&grades))
 }
 
-/// Finds the shards in these folders, or in their folders.
+/// Finds the shards among the given folders and their subfolders.
 fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     let mut parts: Vec<(PathBuf, Part)> = Vec::new();
     for folder in folders {
@@ -105,7 +105,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     Ok(parts)
 }
 
-/// Checks that each shard of one grading exists once; returns one of them, and the place of the results.
+/// Checks that each shard of one grading exists once; returns one of them, and the folder for the results.
 fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
@@ -156,17 +156,17 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
     Ok((first, output))
 }
 
-/// Keeps a shard's results in the merged folder, so that a grading in one go finds them there.
+/// Stores a shard's results in the merged folder, so that a later grading without shards finds them.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     let place = Place::new(folder, JOURNAL);
     let (file, length) = match place.file(LARGEST_JOURNAL) {
         Ok(opened) => opened,
-        // A shard without submissions has none.
+        // A shard without submissions has no journal.
         Err(FileError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
-        // A damaged entry is graded again, as in any folder.
+        // A damaged entry is graded again.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }
@@ -175,7 +175,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     .with_context(|| format!("cannot read {}", place.path().display()))
 }
 
-/// Copies the files of a folder. Links are not followed, on neither side.
+/// Copies the files of a folder. Links are not followed on either side.
 fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
     for name in from.names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
         let (source, target) = (from.given_path().join(&name), to.join(&name));
@@ -199,6 +199,6 @@ fn copy_file(file: File, target: &Place) -> io::Result<()> {
     if length > LARGEST_FILE {
         return Err(io::Error::other(format!("it has {length} bytes, the limit is {LARGEST_FILE}")));
     }
-    // A file that grows meanwhile does not keep us.
+    // Stop at the length, even if the file grows.
     output::copy_at(target, &mut file.take(length))
 }

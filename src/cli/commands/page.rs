@@ -1,4 +1,4 @@
-//! `page`: the page that checks traces in a browser.
+//! The command `page`, which writes the page that checks traces in a browser.
 use crate::{
     cli::{arguments::PageArguments, output::Output},
     files::{Identity, open_for_reading, read_limited},
@@ -9,16 +9,16 @@ use anyhow::{Context, Result, anyhow, bail};
 use fosssim_browser::CourseSuite;
 use std::borrow::Cow;
 
-/// The module that was compiled into the program (build.rs).
+/// The WebAssembly module that was compiled into the program (build.rs).
 #[cfg(has_module)]
 const MODULE: Option<&[u8]> = Some(include_bytes!(env!("FOSSSIM_MODULE_FILE")));
 #[cfg(not(has_module))]
 const MODULE: Option<&[u8]> = None;
 
-/// No module is larger.
+/// The maximum size of a module, in bytes.
 const LARGEST: u64 = 64 << 20;
 
-/// The first bytes of every module.
+/// The first bytes of every WebAssembly module.
 const MAGIC: &[u8] = b"\0asm";
 
 pub(super) fn run(arguments: &PageArguments) -> Result<()> {

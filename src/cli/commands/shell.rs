@@ -16,13 +16,13 @@ use clap_complete::{
 };
 use std::ffi::OsStr;
 
-/// The name under which the program is installed.
+/// The name of the installed program.
 const NAME: &str = "fosssim-oracle";
 
-/// The environment variable by which a shell's script asks for completions.
+/// The environment variable with which a shell's script requests completions.
 const VARIABLE: &str = "FOSSSIM_COMPLETE";
 
-/// Parts of the script for bash, which splits `asset:Group/name` into three words, and those that put them together.
+/// Parts of the script for bash, which splits `asset:Group/name` into three words, with replacements that join them.
 const WORDS_OF_BASH: [(&str, &str); 2] = [
     (
         r#"    local words=("${COMP_WORDS[@]}")
@@ -49,12 +49,12 @@ const WORDS_OF_BASH: [(&str, &str); 2] = [
     ),
 ];
 
-/// Answers a shell that asks for completions, and ends the program then.
+/// Answers a shell that requests completions, and ends the program after that.
 pub(in crate::cli) fn complete_if_asked() {
     CompleteEnv::with_factory(|| with_names(Arguments::command())).var(VARIABLE).bin(NAME).complete();
 }
 
-/// Returns a command whose suites, scenes, traces and mistakes are completed by name.
+/// Returns a command in which suites, scenes, traces and mistakes are completed by name.
 fn with_names(command: Command) -> Command {
     let completed = command.mut_args(|argument| match argument.get_id().as_str() {
         "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
@@ -92,7 +92,7 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
 
 pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
-    // Sets the full names of the commands.
+    // This sets the full names of the commands.
     command.build();
     for name in &arguments.command {
         let Some(found) = command.find_subcommand(name) else {
@@ -106,7 +106,7 @@ pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
         command = found.clone();
     }
     let mut page = Vec::new();
-    // The foot of a page has the version; clap knows none for a command.
+    // The foot of a page contains the version, which clap does not set for subcommands.
     let source = format!("{NAME} {}", env!("CARGO_PKG_VERSION"));
     clap_mangen::Man::new(command).source(source).manual("Manual of fosssim-oracle").render(&mut page)?;
     let page = String::from_utf8_lossy(&page).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES AND NOTES\n");

@@ -1,4 +1,4 @@
-//! `shrink`: the smallest scene on which a program is still wrong for the same reason.
+//! The command `shrink`, which finds the smallest scene on which a program is still wrong for the same reason.
 use super::{
     pages::Pages,
     probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks, note},
@@ -40,7 +40,7 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     if arguments.suite.is_some() {
         known.reverse();
     }
-    // A named scene is examined with those around it, for the likely mistakes; a file alone.
+    // A named scene is tried together with related ones, for the likely mistakes; a file is tried alone.
     let is_chosen = |name: &str| arguments.scene.as_deref().is_none_or(|scene| Path::new(name) == scene);
     let named = known.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
     let mut tasks = match (named, &arguments.scene) {
@@ -83,18 +83,18 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
             console::print(ExplainedPage { diagnosis: &diagnosis, cards }.html())?;
         }
     }
-    // After an interruption the best scene so far was reported.
+    // After an interruption, the best scene so far was reported.
     Ok(if program.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the name of the file for a further scene: `small-2.xml` behind `small.xml`.
+/// Returns the file name for a further scene, such as `small-2.xml` after `small.xml`.
 fn number_file(name: &Path, number: usize) -> std::path::PathBuf {
     let Some(stem) = name.file_stem().filter(|_| number > 0) else { return name.to_owned() };
     let extension = name.extension().map(|end| format!(".{}", end.to_string_lossy())).unwrap_or_default();
     name.with_file_name(format!("{}-{}{extension}", stem.to_string_lossy(), number + 1))
 }
 
-/// Adds the smallest scene for each cause, made from chosen scenes, and its card, to a program's report.
+/// Adds the smallest scene for each cause and its card to a program's report; only the chosen scenes are reduced.
 pub(super) fn add_smallest(
     program: &ProgramUnderTest,
     examined: &mut ExaminedProgram,
@@ -137,7 +137,7 @@ pub(super) fn add_smallest(
     Ok(())
 }
 
-/// Returns the report on a smallest scene in a grade, with its cards among the pages'. The hints are those of staff and
+/// Returns the report on a smallest scene in a grade, and stores its cards. The hints are those of staff and of
 /// students.
 pub(super) fn describe_for_grade(
     small: &ShrunkScene,
@@ -154,7 +154,7 @@ pub(super) fn describe_for_grade(
     for_staff
 }
 
-/// Returns the report on a smallest scene, and its card.
+/// Returns the report on a smallest scene, with its card.
 fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -> (SmallestScene, Option<Card>) {
     let ShrunkScene { reason, origin, small: SmallScene { scene, step, runs, is_minimal }, seen, .. } = small;
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
@@ -200,16 +200,16 @@ fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -
     (told, card)
 }
 
-/// Puts the cause before other explanations of the run; its example is the run's.
+/// Moves the cause before other explanations of the run, with the example of the run.
 fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
     let own = case.explanations.iter().position(|one| is_named_in(cause, std::slice::from_ref(one)));
     let own = own.map(|place| case.explanations.remove(place)).or_else(|| case.explanations.first().cloned());
     let lead = match own {
-        // Its counts are the run's.
+        // The run's explanation has the counts of the run.
         Some(own) if matches!(cause.about, About::Pairs(_)) => own,
         own => {
             let example = own.and_then(|own| own.example);
-            // It lists the stages that are not written yet.
+            // The list contains the unwritten stages.
             let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
             Explanation { example, reproduced: 0, samples: 0, same_as, ..cause.clone() }
         }
@@ -217,7 +217,7 @@ fn lead_with(cause: &Explanation, hints: Hints, case: &mut Case) {
     case.explanations.splice(0..0, cut(hints, vec![lead]));
 }
 
-/// Returns the values that differ, and the first finding.
+/// Returns the differing values as text, and the first finding.
 fn differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);

@@ -1,4 +1,4 @@
-//! Finds the submissions that the arguments of `grade` mean.
+//! The search for the submissions that the arguments of `grade` name.
 use crate::{
     cli::{arguments::grade::GradeArguments, console, input},
     files::{Folder, Identity},
@@ -15,55 +15,56 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Files that mark a folder as one of results, under any name.
+/// The files that mark a folder as one of results.
 const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
 
-/// The folders in it.
+/// The names of folders in a folder of results.
 const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
-/// The reason why a folder of results is no submission.
+/// The reason why a folder of results is not a submission.
 const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 
-/// The greatest number of a class's entries.
+/// The maximum number of entries of a class's folder.
 const MOST_ENTRIES: usize = 100_000;
 
-/// The submissions of a command line, and entries that are none.
+/// The submissions of a command line, and the entries that are not submissions.
 pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
     pub(super) passed_over: Vec<PassedOver>,
 }
 
-/// A submission that has no name yet.
+/// A submission before it gets its name.
 struct Entry {
-    /// The place of the submission.
+    /// The path of the submission.
     path: PathBuf,
-    /// The folder, or the file itself.
+    /// The submission's folder, or its file.
     folder: PathBuf,
-    /// The program in the folder.
+    /// The name of the program in the folder.
     program: Option<String>,
-    /// Whether the folder is the submission's own.
+    /// Whether the folder belongs only to the submission.
     is_folder: bool,
 }
 
-/// A search for submissions, with the entries that are none.
+/// A search for submissions; also collects entries that are not submissions.
 pub(super) struct Search<'a> {
     arguments: &'a GradeArguments,
-    /// The build of the suite.
+    /// The build of the suite, if it has one.
     build: Option<&'a BuildStep>,
     /// The folder for results.
     output: &'a Path,
 }
 
 impl<'a> Search<'a> {
-    /// Creates a search among these arguments.
+    /// Creates a search among the arguments.
     pub(super) const fn new(arguments: &'a GradeArguments, build: Option<&'a BuildStep>, output: &'a Path) -> Self {
         Self { arguments, build, output }
     }
 
-    /// Returns the submissions, each with a name of its own.
+    /// Returns the submissions, each with a unique name.
     ///
     /// # Errors
-    /// Paths that are not there, folders without any submission.
+    ///
+    /// A missing path, or a folder without submissions.
     pub(super) fn run(&self) -> Result<FoundSubmissions> {
         let (mut found, mut passed_over) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {
@@ -94,14 +95,15 @@ impl<'a> Search<'a> {
         Ok(FoundSubmissions { submissions, passed_over })
     }
 
-    /// Returns the submission in a folder: its sources if the suite builds them, else the program inside. A missing
-    /// program is the submission's fault: its grade says so.
+    /// Returns the submission in a folder: its sources if the suite builds them, otherwise the program inside. A
+    /// missing program is the submission's fault, which its grade reports.
     fn folder(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
-    /// Returns whether a folder is a submission itself: it holds the program, or the first file of the suite's build.
+    /// Returns whether a folder is a single submission, because it contains the program or the first file of the
+    /// suite's build.
     fn is_one(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };
@@ -116,7 +118,7 @@ impl<'a> Search<'a> {
         usual.iter().copied().chain(words).any(holds)
     }
 
-    /// Returns whether a folder is the one for results, or holds those of an earlier grading.
+    /// Returns whether a folder is the one for results, or contains those of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
         let same = |one: &Path, other: &Path| matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other);
         same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
@@ -186,8 +188,8 @@ fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Returns why a file in a class's folder is no submission. Executable files are submissions, and so are files that
-/// begin as programs or archives: learning platforms keep no permissions.
+/// Returns the reason why a file in a class's folder is not a submission, if so. Executable files are submissions, and
+/// so are files that begin like programs or archives, because learning platforms lose permissions.
 fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
@@ -200,7 +202,7 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
         file.take(fosssim_intake::START as u64).read_to_end(&mut start).map_err(|error| error.to_string())
     });
     match (read, FileKind::from_start(&start)) {
-        // Its grade reports why it can't be read.
+        // The grade reports why the file can't be read.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
             let found = fosssim_intake::describe(&start);
@@ -209,14 +211,14 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     }
 }
 
-/// Returns a program among others. It is opened beneath the folder, where no link is followed.
+/// Returns a program among others. It is opened below the folder, without following links.
 fn entry(folder: &Path, path: &Path) -> Entry {
     let program = path.file_name().and_then(OsStr::to_str).map(str::to_owned);
     let folder = if program.is_some() { folder } else { path };
     Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
 }
 
-/// Rejects a scene in the place of the program, which is a slip of the user.
+/// Rejects a scene in the place of the program, which is a user's mistake.
 fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::printable_name(path);
@@ -234,7 +236,7 @@ fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
     passed_over.push(PassedOver { name, why: why.to_owned() });
 }
 
-/// Returns the last name of a path.
+/// Returns the last component of a path.
 fn last_name(path: &Path) -> OsString {
     if let Some(name) = path.file_name() {
         return name.to_owned();
@@ -243,9 +245,9 @@ fn last_name(path: &Path) -> OsString {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
-/// Returns distinct names for these paths: the last names. If several of these look the same, names that only look
-/// equal are shown exactly, equal names get as many of their folders as needed, and names that still look the same get
-/// a number.
+/// Returns unique names for paths, by default their last components. If several look the same, names that only look
+/// equal are shown exactly, equal names get as many parent folders as needed, and names that still look the same get a
+/// number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
@@ -271,15 +273,15 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     paths.iter().zip(&own).map(&mut name).collect()
 }
 
-/// Returns the shortest end of a path that none of the others has.
+/// Returns the shortest end of a path that is unique among the paths.
 fn end_of<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
     let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
     let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
     ends.find(is_own).unwrap_or(path)
 }
 
-/// Returns which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder,
-/// in which alone an entry of a class has an owner of its own.
+/// Returns the identity of the file behind each program. If several submissions link to one file, its owner submitted
+/// it. The owner of a submission is that of its folder, because in a class only folders have different owners.
 fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;

@@ -1,4 +1,4 @@
-//! The text of `suite check`: the contents of a suite, and facts to know before it grades. Also the list of suites.
+//! The text of `suite check`: the contents of a suite, and facts to know before grading. Also the list of suites.
 use super::suite_sight::{ENOUGH, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
@@ -19,24 +19,24 @@ use crate::{
 use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
-/// A scene and those of the reference's decisions that round-off may flip, or the reason why it has no run.
+/// A scene with the reference's decisions that round-off may flip, or the reason why it has no run.
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
-/// The greatest number of decisions listed of a scene.
+/// The maximum number of listed decisions per scene.
 const LISTED: usize = 3;
 
-/// The contents of a suite's scenes, with or without a list of the missing ones.
+/// The contents of a suite's scenes, and the selected lists.
 #[derive(Debug)]
 pub(super) struct SuiteContents {
     /// The measured coverage.
     pub(super) coverage: Coverage,
-    /// Whether each missing pair of properties has a line.
+    /// Whether missing pairs of properties are listed.
     pub(super) lists_missing: bool,
-    /// The mistakes that no scene shows, by parts of a program's work; empty unless requested.
+    /// The mistakes that no scene shows, by area of the assignment; empty unless requested.
     pub(super) parts: Vec<SeenPart>,
 }
 
-/// Renders the whole report; `undecided` holds the scenes with borderline decisions.
+/// Renders the whole report; `undecided` are the scenes with borderline decisions.
 pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
@@ -57,10 +57,10 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     text
 }
 
-/// The version of the JSON list; it changes when a field's meaning does.
+/// The version of the JSON list, which changes if a field's meaning changes.
 const SCHEMA: u32 = 2;
 
-/// Returns the suites that come with the program, a line on each.
+/// Returns the built-in suites, with one line each.
 pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
@@ -71,8 +71,8 @@ pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     suites.iter().map(line).collect()
 }
 
-/// Renders the list as one JSON object: `name` is what `--suite` takes, `default` is the suite that counts where none
-/// is named.
+/// Renders the list as one JSON object: `name` is the value for `--suite`, and `default` is the suite that is used by
+/// default.
 pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     let entry = |(name, plan): &(String, Plan)| {
         let (suite, version) = name.split_once('@').unwrap_or((name, "1"));
@@ -91,19 +91,19 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
-/// Returns `12 scenes, 100 points`.
+/// Returns the size of a plan, such as `12 scenes, 100 points`.
 fn describe_size(plan: &Plan) -> String {
     format!("{}, {}", format_count(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
 }
 
-/// Returns `1 point`, `12.5 points`.
+/// Returns points as text, such as `1 point` or `12.5 points`.
 fn counted_points(value: f64) -> String {
     let words = points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")
 }
 
-/// Returns the meaning of the choice of rule books.
+/// Returns the meaning of the choice of rule books, as text.
 const fn rules(rules: Rules) -> &'static str {
     match rules {
         Rules::Parity => "parity: the original's verdict counts, the fair rules are not applied",
@@ -112,7 +112,7 @@ const fn rules(rules: Rules) -> &'static str {
     }
 }
 
-/// Returns the meaning of partial credit.
+/// Returns the meaning of partial credit, as text.
 const fn credit(credit: Credit) -> &'static str {
     match credit {
         Credit::Scenes => "credit per scene",
@@ -181,7 +181,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     text
 }
 
-/// Returns the share of possible events in steps that the scenes contain; nothing for scenes of earlier assignments.
+/// Returns the share of possible events that the scenes contain; empty for scenes of earlier assignments.
 fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {
@@ -204,7 +204,7 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     text
 }
 
-/// Returns the known mistakes that no scene shows.
+/// Returns the known mistakes that no scene shows, as text.
 fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
@@ -227,7 +227,7 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     text
 }
 
-/// Returns a note for each scene that programs of the suite's milestone do not know to the end.
+/// Returns a note for each scene that programs of the suite's milestone cannot run completely.
 fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     let milestone = plan.assignment();
     let note = style.paint(Look::Notice, "note");
@@ -238,7 +238,7 @@ fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }
 
-/// Returns a note that is no error, but worth knowing before a class is graded.
+/// Returns a note on a scene that is not an error, but worth knowing before a class is graded.
 fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
     let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
     let found = match found {

@@ -1,4 +1,4 @@
-//! The table of `grade --timings`: the processor time of each part of a grading.
+//! The table of `grade --timings`, with the processor time of each part of a grading.
 use crate::{
     cli::console,
     report::{
@@ -9,7 +9,7 @@ use crate::{
     suite::timings::{RunPart, Timings},
 };
 
-/// Prints the table. The sandbox's processes must have ended, or their time is not in it.
+/// Prints the table. The sandbox's processes must have ended, otherwise their time is missing.
 pub(super) fn print(timings: &Timings) {
     let own = processor_time(TimeOf::Process);
     let others = processor_time(TimeOf::Children);

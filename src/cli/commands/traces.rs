@@ -1,5 +1,5 @@
-//! `grade --traces`: judges existing traces, a folder of them for each submission. No program runs, so that no sandbox
-//! is needed; the program's time, and whether it ended well, are unknown.
+//! The option `grade --traces`, which judges existing traces, a folder of them for each submission. No program runs, so
+//! no sandbox is needed; the program's time and end are unknown.
 use super::{
     compare,
     ending::{HARDEST, exit_code, text, text_detail},
@@ -74,17 +74,17 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
 /// Returns the grade of a folder of traces.
 fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
-    // In the plan's order, whatever the number of threads.
+    // The order is the plan's, whatever the number of threads.
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
     traces::grade(plan, submission, results, passed_over.into_iter().flatten().collect())
 }
 
-/// Traces that are named in a warning.
+/// The maximum number of traces that a warning names.
 const NAMED: usize = 5;
 
-/// Returns the traces in a folder and in the folders within it that belong to no scene, in words.
+/// Returns a sentence about the traces in a folder and its subfolders that belong to no scene, if there are any.
 fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     let texts = |folder: &Folder| -> Vec<String> {
         let names = folder.names().unwrap_or_default();
@@ -109,10 +109,10 @@ fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{more}", named.join(", ")))
 }
 
-/// The result of one scene, and what of it was passed over.
+/// The result of one scene, and a warning about skipped files.
 type JudgedScene = (SceneResult, Option<String>);
 
-/// Returns the result of one scene. A panic is its judge error.
+/// Returns the result of one scene; a panic becomes its judge error.
 fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
     let failure = match folder.as_ref().map(|folder| catch_panic(|| judge(plan, task, folder, pages))) {
         Ok(Ok(Ok(judged))) => return judged,
@@ -146,9 +146,9 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     Ok((result, passed_over))
 }
 
-/// Reads the trace of a scene, under its whole name or the name behind its group, plain or packed. Without a usable
-/// trace it describes what is there instead: something else than a file, a damaged file, or one that is reached by a
-/// link, as another's may be. No more than `most` bytes are read: a longer trace is cut, and bad.
+/// Reads the trace of a scene, under its full name or its name without group, plain or packed. If there is no usable
+/// trace, the result describes the entry in its place: something other than a file, a damaged file, or a link, which
+/// may lead to another's trace. At most `most` bytes are read; a longer trace is cut, and bad.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);

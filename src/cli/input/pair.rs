@@ -1,4 +1,4 @@
-//! Pairs as typed: their points and radii, or their names in a scene.
+//! Typed pairs: their points and radii, or their names in a scene.
 use crate::{
     num::vector::Vec2,
     scene::Scene,
@@ -7,10 +7,11 @@ use crate::{
 };
 use anyhow::{Context, Result, anyhow, bail};
 
-/// Returns a pair and how it moves from its word: `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
+/// Parses a pair with its motion, such as `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
 ///
 /// # Errors
-/// When it is no such pair.
+///
+/// When the text is not such a pair.
 pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = word.split(':').collect::<Vec<_>>();
     let word = points.remove(0);
@@ -47,9 +48,10 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
     })
 }
 
-/// Returns a pair of a scene: `pe:3,1`.
+/// Parses a pair of a scene, such as `pe:3,1`.
 ///
 /// # Errors
+///
 /// When the scene has no such pair, or detection never checks it.
 pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
@@ -95,13 +97,14 @@ fn kind_of(word: &str) -> Result<PairKind> {
     })
 }
 
-/// Returns a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
+/// Parses a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
 ///
 /// # Errors
-/// When it has none of these forms.
+///
+/// When the text has none of these forms.
 fn moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
-        // The displacement is the difference of the ends, as the course's code takes it.
+        // The displacement is the difference of the ends, computed as in the course's code.
         let (start, end) = (vector(start)?, vector(end)?);
         return Ok(PointMotion { start, shift: end - start });
     }
@@ -116,10 +119,11 @@ fn moving(word: &str) -> Result<PointMotion> {
     }
 }
 
-/// Returns `X,Y`
+/// Parses `X,Y`.
 ///
 /// # Errors
-/// When it is no point with finite coordinates.
+///
+/// When the text is not a point with finite coordinates.
 fn vector(word: &str) -> Result<Vec2> {
     let advice = || format!("`{word}` is not a point; write X,Y as in 3,-1.5");
     let (x, y) = word.split_once(',').with_context(advice)?;

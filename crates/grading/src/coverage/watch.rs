@@ -1,4 +1,4 @@
-//! Observes the reference's run and notes every event.
+//! Observes the reference's run and records every event.
 use super::{
     Coverage,
     axes::{
@@ -15,11 +15,11 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// The bodies of a contact of the current pass, and its event: once if it is their only contact, and once if they have
-/// several. The end of the pass decides which.
+/// The bodies of a contact of the current pass, and its event in two forms: as their only contact, and as one of
+/// several. The end of the pass decides which applies.
 type WatchedContact = (Vec<usize>, [Happening; 2]);
 
-/// A zone as the last round had it.
+/// A zone of the last round.
 type EarlierZone = (Vec<usize>, bool);
 
 pub(super) struct Watch<'a> {
@@ -29,18 +29,18 @@ pub(super) struct Watch<'a> {
     step: StepHeard,
 }
 
-/// The events of the step that runs.
+/// The events of the current step.
 #[derive(Default)]
 struct StepHeard {
     /// The positions of bodies at the start and at the end of the step, as the current pass sees them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
     contacts: Vec<WatchedContact>,
-    /// The number of hits in each pass: of the impulse rounds, or of the step's only pass.
+    /// The number of hits in each pass of the impulse rounds, or in the step's only pass.
     hits: Vec<usize>,
     /// All contacts of the step's passes for zones.
     zone_contacts: BTreeSet<Pair>,
-    /// The zones that are moved in this round, and in the round before.
+    /// The zones that are moved in this round and the round before.
     zones: Vec<EarlierZone>,
     before: Vec<EarlierZone>,
     rounds: u32,
@@ -86,7 +86,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Notes the contacts of a pass, now that it is known which have bodies in common.
+    /// Records the contacts of a pass, after it is known which have bodies in common.
     fn note_contacts(&mut self) {
         let contacts = std::mem::take(&mut self.step.contacts);
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {

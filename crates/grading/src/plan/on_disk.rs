@@ -1,19 +1,19 @@
-//! Suites and scenes that are files.
+//! Suites and scenes in files.
 use super::{MatchingScenes, Plan, built_in, built_in_names, load_by, meant};
 use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_model::scene;
 use std::{io, path::Path};
 
-/// A suite of more bytes is none.
+/// The maximum size of a suite file, in bytes.
 pub const LARGEST_SUITE: u64 = 1 << 20;
 
-/// The greatest number of scenes of a suite, and of bytes in all of them.
+/// The maximum number of scenes of a suite.
 pub const MOST_SCENES: usize = 10_000;
-/// See [`MOST_SCENES`].
+/// The maximum number of bytes in all scenes of a suite.
 pub const MOST_SCENE_BYTES: u64 = 256 << 20;
 
-/// The reason why there is no plan: no such suite, a file that can't be read, or everything that is wrong with it.
+/// The reason why there is no plan: no such suite, an unreadable file, or a suite with errors.
 #[derive(Debug, thiserror::Error)]
 #[error("{words}")]
 pub struct FindError {
@@ -29,17 +29,18 @@ impl From<String> for FindError {
     }
 }
 
-/// Returns the message for a suite that is not sound; each problem is a line.
+/// Returns the message for an invalid suite, with a line for each problem.
 fn unsound(name: &str, SuiteError { problems }: &SuiteError) -> String {
     let lines: String = problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect();
     let plural = if problems.len() == 1 { "" } else { "s" };
     format!("the suite has {} problem{plural}:{lines}", problems.len())
 }
 
-/// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up next to it.
+/// Finds a suite: one of the program's by its name, or a file. Files that it names are relative to its folder.
 ///
 /// # Errors
-/// When there is no such suite; otherwise everything that is wrong with it.
+///
+/// When there is no such suite, or with all of its problems.
 pub fn find(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
     let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -63,16 +64,17 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     loaded.map_err(|error| unsound(name, &error).into())
 }
 
-/// Reads, validates and looks up a suite; files are relative to `folder`.
+/// Reads and validates a suite, and finds its scenes; files are relative to `folder`.
 ///
 /// # Errors
-/// As for [`load_by`].
+///
+/// The errors of [`load_by`].
 pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
     let mut room = FileBudget { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
     load_by(text, &mut |pattern| files(pattern, folder, &mut room))
 }
 
-/// The room that is left for a suite's files.
+/// The remaining budget for a suite's files.
 struct FileBudget {
     scenes: usize,
     bytes: u64,
@@ -105,7 +107,7 @@ fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Matching
     Ok(found)
 }
 
-/// Returns the bytes of a scene: of a regular file, which can be read without waiting.
+/// Returns the content of a scene file, which must be regular so that reading does not block.
 fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
     const LARGEST: u64 = scene::LARGEST_SCENE as u64;
     let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;

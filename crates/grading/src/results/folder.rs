@@ -1,7 +1,7 @@
 //! Results in a folder: a journal with one JSON line per judged scene.
 //!
-//! A line is written and flushed before its result is reported. A line cut short by a crash is dropped on the next
-//! opening. [`line`] writes the lines; those of other versions are ignored. A lock keeps two graders out of one folder.
+//! A line is written and flushed before its result is reported. A line that a crash cut short is dropped at the next
+//! opening. Lines of other versions are ignored. A lock prevents two graders in one folder.
 use super::{KeepError, Results, line, read_line};
 use crate::{key::Key, result::SceneResult};
 use fosssim_files::{FileError, Folder};
@@ -15,20 +15,20 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-/// The file that keeps results.
+/// The name of the journal file.
 pub const JOURNAL: &str = "journal.jsonl";
 
-/// The file that a grader at work holds locked.
+/// The name of the file that an active grader keeps locked.
 pub const LOCK: &str = ".lock";
 
-/// A journal of more bytes is not read: 10,000 submissions of 85 scenes that are all wrong and well explained write a
-/// quarter of it.
+/// The maximum size of a journal, in bytes: four times that of 10,000 submissions of 85 scenes that are all wrong and
+/// well explained.
 pub const LARGEST_JOURNAL: u64 = 16 << 30;
 
-/// A journal with a line of more bytes is damaged; results have some thousand.
+/// The maximum length of a line, in bytes; results have some thousand bytes. A journal with a longer line is damaged.
 pub const LONGEST_LINE: usize = 16 << 20;
 
-/// Results in one output folder, locked while it lives.
+/// The results in an output folder, which stays locked while this value exists.
 #[derive(Debug)]
 pub struct FolderResults {
     journal: Mutex<Journal>,
@@ -43,10 +43,11 @@ struct Journal {
 }
 
 impl FolderResults {
-    /// Opens or creates the journal in an existing folder. With `fresh` earlier results are forgotten.
+    /// Opens or creates the journal in an existing folder. `fresh` discards earlier results.
     ///
     /// # Errors
-    /// When another grader holds the folder, or files can't be read or written.
+    ///
+    /// When another grader has locked the folder, or files can't be read or written.
     pub fn open(folder: &Path, fresh: bool) -> io::Result<Self> {
         let at = |name: &str| {
             let path = folder.join(name);
@@ -71,10 +72,10 @@ impl FolderResults {
         let mut found = BTreeMap::new();
         let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL))? };
         if metadata.nlink() > 1 {
-            // A backup, or a student who linked another's file here: the other names keep their file.
+            // The journal has other names, from a backup or a student's link: copy it, so that the other file stays.
             file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
         }
-        // The bytes that a crash left behind the last whole line go away.
+        // Remove the bytes after the last whole line, which a crash left.
         file.set_len(sound).map_err(at(JOURNAL))?;
         file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL))?;
         let path = folder.join(JOURNAL);
@@ -96,12 +97,12 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     })
 }
 
-/// Reads the results of a journal, and where its last whole line ends.
+/// Reads the results of a journal, and the end of its last whole line.
 fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
     let mut sound = 0;
     for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
-        // A damaged line costs its own result only.
+        // A damaged line loses only its own result.
         if let Some(entry) = read_line(line) {
             found.insert(entry.key, entry.result);
         }
@@ -113,7 +114,8 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
 /// Passes the whole lines of a journal to `take`.
 ///
 /// # Errors
-/// When it can't be read, or has a line that is longer than any result; the errors of `take`.
+///
+/// When the journal can't be read or has a line longer than any result, and the errors of `take`.
 pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
@@ -136,7 +138,7 @@ pub fn for_each_line<E: From<io::Error>>(
     }
 }
 
-/// Returns a journal of our own with the first bytes of another.
+/// Creates a new journal with the first `length` bytes of another.
 fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
     let mut own = folder.replacement(OsStr::new(JOURNAL), None)?;
     file.rewind()?;
@@ -158,11 +160,11 @@ impl Results for FolderResults {
     }
 }
 
-/// Writes a whole line or nothing.
+/// Appends a whole line or nothing.
 fn append(file: &mut File, line: &[u8]) -> io::Result<()> {
     let before = file.stream_position().unwrap_or(0);
     file.write_all(line).and_then(|()| file.flush()).inspect_err(|_| {
-        // The next line must not follow half a line; opening would drop the half anyway.
+        // Truncate, so that the next line does not follow half a line.
         let _ = file.set_len(before);
         let _ = file.seek(io::SeekFrom::Start(before));
     })

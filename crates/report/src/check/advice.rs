@@ -1,12 +1,11 @@
-//! The place to check: the part of the program that the likely mistake is in. If no mistake is named, the first
-//! finding's kind suggests a place.
+//! The advice where to look in the program. If no likely mistake is named, the kind of the first finding suggests a
+//! place.
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 use fosssim_model::assignments::CollisionType;
 
-/// Returns the places to check. There are none if the explanations name them: a known mistake says where it is, a
-/// polynomial has its name.
+/// Returns the advice; empty if the explanations are sufficient, because they name a known mistake or a polynomial.
 pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
@@ -16,7 +15,7 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     }
 }
 
-/// Returns the advice of milestones whose steps log states only, by their collision handling.
+/// Returns the advice for milestones whose traces log only states, by their collision handling.
 fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
     Some(match (finding.detail, collisions) {
         (FindingDetail::MissedCollision { .. }, CollisionType::Simple) => &[
@@ -45,7 +44,7 @@ fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'st
     })
 }
 
-/// Returns the advice by the kind of the first finding: later findings often follow from it.
+/// Returns the advice for the kind of the first finding, because later findings often follow from it.
 fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
     if let Some(advice) = milestone_advice(finding, collisions) {
         return advice;
@@ -127,7 +126,7 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
     }
 }
 
-/// Returns the advice where a pair's force was left out, or applied twice.
+/// Returns the advice for a pair whose force was left out or applied twice.
 const fn pair_advice(is_doubled: bool) -> &'static [&'static str] {
     match is_doubled {
         false => &[

@@ -25,7 +25,7 @@ pub(crate) fn place(finding: &Finding, steps: u32) -> String {
     }
 }
 
-/// Returns one finding in words, and its values side by side.
+/// Returns one finding as a sentence, and its values side by side.
 pub(super) fn block(finding: &Finding, style: Style) -> String {
     format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
 }
@@ -33,16 +33,16 @@ pub(super) fn block(finding: &Finding, style: Style) -> String {
 /// A value that a finding compares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Value {
-    /// There is none.
+    /// There is no value.
     Nothing,
-    /// How often.
+    /// A number of occurrences.
     Count(usize),
-    /// A number.
+    /// A floating-point number.
     Number(f64),
 }
 
 impl Value {
-    /// Returns the value to its last bit.
+    /// Returns the exact value as text.
     pub(crate) fn exact(self) -> String {
         match self {
             Self::Nothing => "none".to_owned(),
@@ -57,22 +57,22 @@ impl Value {
 pub(crate) struct Row {
     /// The name of both values.
     pub(crate) name: &'static str,
-    /// The reference's.
+    /// The reference's value.
     pub(crate) expected: Value,
-    /// The trace's.
+    /// The trace's value.
     pub(crate) actual: Value,
-    /// Whether they are not the same.
+    /// Whether the values differ.
     pub(crate) differs: bool,
 }
 
-/// The values of a finding side by side, with remarks behind them.
+/// The values of a finding side by side, with the remarks before and after them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
-    /// The place of the records before the step in the trace, for a reader who inspects its bytes.
+    /// The position of the preceding records in the trace, for readers who inspect its bytes.
     before: Vec<String>,
     pub(crate) rows: Vec<Row>,
     pub(crate) after: Vec<String>,
-    /// The values that the original compares, where these are others.
+    /// The values that the original compares, if they are different.
     original: Option<String>,
 }
 
@@ -123,7 +123,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
-            // The factor that the finding was made with.
+            // The factor by which the finding was made.
             let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
@@ -157,13 +157,12 @@ fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
     format!("polynomial {} of the record", place.index)
 }
 
-/// Returns two polynomials by power, marked where they part once the factor on which most coefficients agree is taken
-/// out.
+/// Returns two polynomials by power. Coefficients that differ after division by the common factor are marked.
 fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
     polynomials_with(place, expected, actual, factor(expected, actual), None)
 }
 
-/// Compares two polynomials by power with this factor, which the expected values carry; one power is known to differ.
+/// Compares two polynomials by power, where `factor` scales the expected values; one power is known to differ.
 fn polynomials_with(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],
@@ -196,7 +195,7 @@ fn polynomials_with(
     }
 }
 
-/// The powers of a polynomial's coefficients; none has more.
+/// The names of the powers of a polynomial's coefficients; no polynomial has more.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
 /// Returns the contact normal and time.

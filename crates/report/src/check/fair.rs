@@ -11,7 +11,7 @@ use fosssim_judge::{
     fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
 };
 
-/// Renders the section; empty if the fair rules did not judge.
+/// Renders the section; `None` if the fair rules did not judge.
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
@@ -60,7 +60,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     Some(text)
 }
 
-/// Returns the kinds of findings of a book, with their first examples.
+/// Returns the kinds of findings of a book, with the first example of each.
 pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
@@ -80,7 +80,7 @@ pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     }
 }
 
-/// Returns the grounds of the fair verdict, in one line.
+/// Returns the reason for the fair verdict, in one line.
 pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
@@ -113,7 +113,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     }
 }
 
-/// Returns `coefficients 12 %, positions 3 %`; unused shares are left out.
+/// Returns the used shares of tolerances, such as `coefficients 12 %, positions 3 %`; unused shares are left out.
 fn shares(fair: &Judgement) -> Option<String> {
     let shares = fair.shares;
     let list: Vec<String> = [
@@ -133,7 +133,7 @@ fn percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Returns which of the books accepts a trace that the other one rejects.
+/// Returns the sentence which book accepts and which one rejects the trace.
 pub(crate) const fn sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
         "the original fails this trace, the fair rules accept it"

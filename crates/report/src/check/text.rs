@@ -1,4 +1,4 @@
-//! The check report for people: the verdict first, then what leads to it.
+//! The check report for people: first the verdict, then its reasons.
 use super::{
     super::{
         explain,
@@ -17,15 +17,15 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
 
-/// The advice where a trace has met a limit.
+/// The advice for a trace that exceeds a limit.
 const LIMIT: &str =
     "this is a limit of this program, which the original does not have: it says nothing about the trace";
 
-/// The advice at a computation without result.
+/// The advice for a computation without a result.
 const ABSURD: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
                       absurdly large in the steps before";
 
-/// The greatest number of explanations that are shown without `--tables`.
+/// The maximum number of explanations that are shown without `--tables`.
 const EXPLANATIONS: usize = 2;
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
@@ -43,10 +43,10 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
-    // The cause first, then where it shows first.
+    // Show the cause first, then its first occurrence.
     let is_told = !is_other_scene(check);
     parts.extend(explanations(check, style).filter(|_| is_told));
-    // With all steps shown, it appears there again.
+    // If all steps are shown, the first finding appears there.
     let first = first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(section("Where to look", "  - ", &advice::lines(check), style));
@@ -56,7 +56,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.push(residuals(outcome, style));
         parts.extend(fair::render(outcome, style));
         let account = outcome.findings_by(check.book());
-        // The fair section holds its own findings.
+        // The fair section shows the fair rules' findings.
         if !account.examples.is_empty() && check.book() == Book::Parity {
             parts.push(findings(account, follows::count(outcome), style));
         }
@@ -70,18 +70,18 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.join("\n")
 }
 
-/// Returns the lines under a heading; nothing without any.
+/// Returns the lines under a heading; `None` without lines.
 fn section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
     let heading = style.paint(Look::Strong, heading) + "\n";
     let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
     (!lines.is_empty()).then(|| heading + &lines)
 }
 
-/// Returns the likely mistakes of the program. The likeliest ones fill no more than a screen.
+/// Returns the likely mistakes of the program, limited to a screen.
 fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
-    // The first difference follows, which is an example, too.
+    // The first difference, which is also an example, follows below.
     let has_example = check.tables || first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
@@ -101,7 +101,7 @@ fn head(check: &Check<'_>, style: Style) -> String {
     format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
 }
 
-/// Returns the reason behind the verdict, in one line.
+/// Returns the reason for the verdict, in one line.
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_no_trace()) {
@@ -142,7 +142,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     }
 }
 
-/// Describes where a trace that is read to its end is damaged, and what its steps before are.
+/// Describes the damage of a trace that is read to its end, and the result of the steps before it.
 fn describe_damage(outcome: &Outcome) -> String {
     let place = match &outcome.damage {
         Some(damage) if damage.step > 0 => format!("the trace is damaged in step {} of {}", damage.step, outcome.steps),
@@ -165,7 +165,7 @@ fn describe_damage(outcome: &Outcome) -> String {
     }
 }
 
-/// Returns the place at which judging a trace ended, and the reason: one line.
+/// Returns a line with the place and the reason of the end of judging.
 #[must_use]
 pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = problem(stop, outcome);
@@ -176,12 +176,12 @@ pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     format!("{what} {place}: {message}")
 }
 
-/// Returns whether judging ended at a limit of this program, which is no fault of the trace.
+/// Returns whether judging ended at a limit of this program, which is not a fault of the trace.
 const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Returns where judging a trace ended, the reason, and the place to check; nothing if there is no such reason.
+/// Returns the place and the reason of the end of judging, and advice where to look, if there is any.
 pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
@@ -241,7 +241,7 @@ fn pass_cell(yes: bool) -> Cell {
     if yes { Cell::with_look(Look::Good, "passed") } else { Cell::with_look(Look::Bad, "failed") }
 }
 
-/// Returns which share of its tolerance a residual uses.
+/// Returns the used share of a residual's tolerance, as the text of a table cell.
 fn share_cell(value: f64, bound: f64) -> String {
     let share = value / bound;
     if share.is_nan() {
@@ -269,7 +269,7 @@ fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     text
 }
 
-/// Writes further notes.
+/// Returns further notes about the trace.
 pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();

@@ -9,7 +9,7 @@ use crate::words;
 use fosssim_findings::{Grade, PassedOver, Verdict};
 use std::fmt::Write;
 
-/// Returns annotations; the words are escaped as workflow commands want it.
+/// Returns annotations, escaped for workflow commands.
 pub(crate) fn annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
@@ -21,7 +21,7 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
             let words: String = clean_output(&build.output).chars().take(4000).collect();
             text += &annotation_of("error", &title, words.lines());
         }
-        // GitHub shows the first ten, so the most important ones come first, each only once.
+        // GitHub shows only ten annotations, so the most important ones come first, without repetition.
         let head = head_lines(grade);
         if !head.is_empty() && grade.failed_build().is_none() {
             let title = format!("{}: {}, {}", grade.submission, grade.verdict, score(grade));
@@ -49,7 +49,7 @@ pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
     entries.iter().map(warning).collect()
 }
 
-/// Lists the entries that are no submissions in Markdown.
+/// Lists the entries that are not submissions in Markdown.
 pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     if entries.is_empty() {
         return String::new();
@@ -101,13 +101,13 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns `12.5 of 20`, or why there are no points.
+/// Returns the score, such as `12.5 of 20`, or the reason why there are no points.
 fn score(grade: &Grade) -> String {
     let reached = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
     reached.or_else(|| no_points(grade)).unwrap_or_default()
 }
 
-/// Returns text without Markdown or HTML of its own.
+/// Returns text in which Markdown and HTML are escaped.
 fn cell(text: &str) -> String {
     let mut cell = String::new();
     for c in one_line(text).chars() {

@@ -1,4 +1,5 @@
-//! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
+//! Gradescope's results.json. If the grader failed there is no score: the harness exits with an error instead of giving
+//! zero points.
 use super::{super::explain, difference, head_lines, points, see_above, speed_words};
 use crate::foreign::{clean_output, plain};
 use crate::{number::format_count, style::Style, view::document, words};
@@ -53,7 +54,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     for (g, group) in grade.groups.iter().enumerate() {
         for (s, scene) in group.scenes.iter().enumerate() {
             tests.push(Test {
-                // Without a score of its own the whole would be the sum of these.
+                // Without its own score, the whole would be the sum of these.
                 score: grade.points.and(scene.points).map(round_points),
                 max_score: round_points(scene.max_points),
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
@@ -61,7 +62,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
-                    // A test that only staff sees may show everything.
+                    // A test that only staff see may show everything.
                     None if tells_all || group.visibility == Visibility::Hidden => output(scene),
                     None => {
                         let mut scene = scene.clone();
@@ -123,7 +124,7 @@ fn overall(grade: &Grade) -> String {
     if let Some(build) = grade.failed_build() {
         lines.push(format!("{}\n{}", plain(&words::build(&build.end)), clean_output(&build.output)));
     } else {
-        // A fault of the upload itself reveals no scene.
+        // A fault of the upload reveals no scene.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
     }
@@ -131,7 +132,7 @@ fn overall(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// Returns the message to a student when the platform's time was over; it names what used the time.
+/// Returns the message to a student if the platform's time limit was reached; it names what used the time.
 fn out_of_time(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(
@@ -165,7 +166,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.join("\n")
 }
 
-/// Returns the points with six decimals at most, so that shares of a group add up to the shown sum.
+/// Returns the points with at most six decimals, so that the shares of a group add up to its sum.
 fn round_points(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

@@ -1,4 +1,4 @@
-//! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
+//! JUnit XML: a suite per group, a case per scene. Wrong programs are failures; errors of the grader are errors.
 use super::{super::explain, difference, head_lines, phrases::NOT_GRADED, wrong_first};
 use crate::foreign::{clean_output, plain};
 use crate::{style::Style, words};
@@ -21,7 +21,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                 suite.add_property(quick_junit::Property::new(format!("likely_mistake.{number}"), plain(line)));
             }
             for scene in wrong_first(std::iter::once(group)) {
-                // A test case has no place of its own for anything but its result and the program's output.
+                // A test case can contain only its result and the program's output.
                 if let Some(words) = difference(scene) {
                     let name = format!("rules_differ.{}", plain(&scene.scene));
                     suite.add_property(quick_junit::Property::new(name, words));
@@ -43,7 +43,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     report.to_string().unwrap_or_default()
 }
 
-/// Returns a suite of one case: the fault of the submission itself, so that no scene was run.
+/// Returns a suite with one case: the fault of the whole submission, which was not run.
 fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.name());

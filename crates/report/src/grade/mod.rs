@@ -1,7 +1,7 @@
 //! Grades in every format that courses use: pure functions from [`Grade`] to text.
 //!
-//! Names and program output are words of others. Each format removes their control characters by `plain` or `one_line`
-//! of `foreign`, and escapes what its own syntax gives a meaning. A test sends hostile words through every format.
+//! Names and program output are untrusted text. Each format removes control characters with `plain` or `one_line` of
+//! `foreign`, and escapes characters with a meaning in its syntax. A test sends hostile text through every format.
 
 mod causes;
 mod changes;
@@ -19,7 +19,7 @@ mod text;
 
 use fosssim_findings::Grade;
 
-/// Returns the JSON document alone, for programs: without the data of other formats.
+/// Returns only the JSON document, without the data for other formats.
 #[must_use]
 pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])

@@ -1,14 +1,14 @@
-//! The sentences about a grade that several formats have in common.
+//! Sentences about a grade that several formats share.
 use crate::{foreign::one_line, number::format_count, words};
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 pub use fosssim_mistakes::together::likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
 
-/// The text in place of a verdict where an entry is no submission.
+/// The text instead of a verdict for an entry that is not a submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// Returns the lines above all scenes in a report for one reader: the fault of the submission itself, or its failures
-/// and its likely mistakes.
+/// Returns the lines above all scenes in a report for one reader: the fault of the whole submission, or its failures
+/// and likely mistakes.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
@@ -28,13 +28,14 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// Returns the worth of mending a mistake, such as `worth 21.4 of 100 points`; empty if it alone costs no points.
+/// Returns the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene fails
+/// only because of it.
 pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     let lost = together::worth(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", score(lost, grade.max_points)))
 }
 
-/// Returns the course's own words on a mistake, to follow ours; empty if there are none.
+/// Returns the course's note on a mistake, to follow the report's text; empty if there is none.
 pub(crate) fn note(grade: &Grade, mistake: &Explanation) -> String {
     grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
@@ -53,7 +54,7 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     }
 }
 
-/// Returns the scenes of some groups, those that are not accepted first.
+/// Returns the scenes of some groups, with scenes that are not accepted first.
 pub(super) fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> Vec<&'a SceneGrade> {
     let mut scenes: Vec<&SceneGrade> = groups.flat_map(|group| &group.scenes).collect();
     scenes.sort_by_key(|scene| scene.verdict.is_accepted());
@@ -73,34 +74,34 @@ pub fn difference(scene: &SceneGrade) -> Option<String> {
     })
 }
 
-/// Returns the first of some names: `a, b, c and 2 more`.
+/// Returns the first of some names as a list, such as `a, b, c and 2 more`.
 pub(super) fn list_some(names: &[impl AsRef<str>], most: usize) -> String {
     let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
     let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
     shown.join(", ") + &more
 }
 
-/// Returns the points without needless digits: `12.5`, `10`.
+/// Returns points without trailing zeros, such as `12.5` or `10`.
 #[must_use]
 pub fn points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns `12.5 of 20 points`.
+/// Returns a score, such as `12.5 of 20 points`.
 #[must_use]
 pub fn score(reached: f64, most: f64) -> String {
     let plural = if points(most) == "1" { "" } else { "s" };
     format!("{} of {} point{plural}", points(reached), points(most))
 }
 
-/// Returns the points, which may be missing: if the grader failed or was stopped, there is no zero.
+/// Returns the points as text. They may be missing, because a failure of the grader does not give zero points.
 #[must_use]
 pub fn format_points(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), points)
 }
 
-/// Returns why a grade has no points.
+/// Returns the reason why a grade has no points.
 #[must_use]
 pub fn no_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {

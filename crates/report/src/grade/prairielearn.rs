@@ -1,5 +1,5 @@
-//! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours and for uploads without a
-//! program that can be run, which charge no attempt.
+//! PrairieLearn's results.json: a score from 0 to 1. `gradable: false` stands for errors of the grader and for uploads
+//! without a runnable program, which do not count as an attempt.
 use super::{super::explain, difference, head_lines, score, see_above, speed_words};
 use crate::foreign::{clean_output, one_line, plain};
 use crate::{style::Style, view::document, words};
@@ -7,7 +7,7 @@ use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 
-/// PrairieLearn rejects more than a megabyte; texts are cut long before.
+/// The maximum length of a text, far below the megabyte that PrairieLearn accepts.
 const LONGEST_TEXT: usize = 4000;
 
 #[derive(Serialize)]
@@ -21,7 +21,7 @@ struct Results {
     tests: Vec<Test>,
 }
 
-/// A group of the suite: PrairieLearn keeps it for the element `fosssim-report` (`integrations/prairielearn`).
+/// A group of the suite, for the PrairieLearn element `fosssim-report` (`integrations/prairielearn`).
 #[derive(Serialize)]
 struct Group {
     name: String,
@@ -73,7 +73,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         }))
         .collect();
     let build = grade.failed_build();
-    // A fault of the upload itself is the same in all groups.
+    // A fault of the upload is the same in all groups.
     let head = match build {
         Some(_) => Vec::new(),
         None if grade.unfit().is_some() => head_lines(grade),
@@ -89,7 +89,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         message: match grade.verdict {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
-            // Groups that students do not see must not show through.
+            // The verdict must not reveal groups that students do not see.
             verdict if shown.groups.len() == grade.groups.len() => verdict.name().to_owned(),
             _ => format!(
                 "{} on the tests shown here ({}); the grade has others, too",
@@ -121,7 +121,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     document(&results)
 }
 
-/// Returns everything about a scene that is not in its message.
+/// Returns everything about a scene except for its message.
 fn output(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = difference(scene).into_iter().collect();
     lines.extend(words::details(scene));

@@ -1,9 +1,9 @@
-//! Points for speed, in a sentence.
+//! The sentence about points for speed.
 use super::points;
 use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
-/// Returns the words on a group's speed: the points, and where they come from.
+/// Returns the sentence about a group's speed: the points, and their origin.
 #[must_use]
 pub fn speed_words(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
@@ -22,7 +22,7 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
     }
 }
 
-/// Returns the ratio, its spread, and how much the points depend on it.
+/// Returns the ratio, its spread, and the effect of the spread on the points.
 fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));

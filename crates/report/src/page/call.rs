@@ -16,13 +16,13 @@ use fosssim_render::{
     plot::{Embedding, PlottedPolynomial, PolynomialPlot},
 };
 
-/// Renders a call under its name, folded unless it is open from the start.
+/// Renders a call under its name, unfolded if `open`.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let (pair, pass) = (PairWords(call.pair), PassWords(call.pass));
     render_template(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
 }
 
-/// A call and its name.
+/// A detection call and its name, for the template.
 #[derive(Template)]
 #[template(path = "call.html")]
 struct CallContent<'a> {
@@ -35,13 +35,13 @@ struct CallContent<'a> {
     key: String,
 }
 
-/// A coefficient of both sides, as markup.
+/// A coefficient of both sides, as HTML.
 struct Row {
     role: String,
     power: usize,
     expected: String,
     own: String,
-    /// The fault, as a word; empty if there is none.
+    /// The fault as a word; empty if there is none.
     word: &'static str,
 }
 
@@ -63,7 +63,7 @@ impl CallContent<'_> {
         detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), Embedding::Inline)
     }
 
-    /// Renders the decision of the trace's own polynomials, and their curves, where one of them is wrong.
+    /// Renders the decision by the trace's own polynomials, and their curves, if one of them is wrong.
     fn draw_own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
         let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
         let curves = match (wrong.next(), wrong.next()) {
@@ -77,17 +77,17 @@ impl CallContent<'_> {
     }
 }
 
-/// Returns the decision of the expected polynomials.
+/// Returns the decision by the expected polynomials.
 fn decision(study: &Study) -> String {
     Detect { study, place: None }.decision(general)
 }
 
-/// Returns whether a curve has a zero within the step. Those without are flat lines: words say it better.
+/// Returns whether a curve has a zero within the step. Curves without are flat lines, which text describes better.
 fn changes_sign(study: &Study) -> bool {
     study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero)))
 }
 
-/// Polynomials that keep their signs over the whole step, in words.
+/// Describes the polynomials that keep their signs over the whole step.
 fn signs(study: &Study) -> String {
     let of = |is_wanted: bool| {
         let is_positive = |curve: &study::Curve| curve.positive.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
@@ -105,7 +105,7 @@ fn is_flat(set: &[Interval]) -> bool {
     !ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
-/// Returns the curves of the trace, drawn as the expected curves are.
+/// Returns the curves of the trace, drawn like the expected ones.
 fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
@@ -121,12 +121,12 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// Returns the curve of a polynomial that is positive on this set.
+/// Returns the curve of a polynomial that is positive on a given set.
 fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
     PlottedPolynomial { name, coefficients, zeros: ends(positive), positive }
 }
 
-/// Returns the zeros of the polynomial where a set ends within the step.
+/// Returns the zeros of a polynomial, which are the ends of its set within the step.
 fn ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|one| [one.lo, one.hi]).collect()
 }
@@ -135,7 +135,7 @@ fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
     !own.is_empty() && marks(curve.logged.coefficients(), own).contains(&true)
 }
 
-/// Returns the intervals in which a polynomial of a trace is positive; none if its zeros can't be found.
+/// Returns the intervals in which a polynomial of a trace is positive; empty if its zeros can't be found.
 fn positive(own: &[f64]) -> Vec<Interval> {
     match own.len() <= 6 && own.iter().all(|c| c.is_finite()) {
         true => positive_set(own).map(|set| set.as_slice().to_vec()).unwrap_or_default(),
@@ -154,7 +154,7 @@ fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     common
 }
 
-/// Returns the decision of the trace's own polynomials.
+/// Returns the decision by the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
     let says = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
         Some(time) => format!("all are positive from time {} on: a collision", number(time)),
@@ -178,7 +178,7 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// Returns all coefficients side by side; those that differ after the factor that fits most are marked.
+/// Returns all coefficients side by side; those that differ after division by the common factor are marked.
 fn rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for (place, curve) in study.curves.iter().enumerate() {
@@ -202,8 +202,7 @@ fn rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     rows
 }
 
-/// Describes for each power whether the coefficients differ once one is multiplied by the factor that makes most of
-/// them agree.
+/// Returns for each power whether the coefficients differ after division by the common factor.
 fn marks(expected: &[f64], own: &[f64]) -> Vec<bool> {
     let differing = differing(expected, own, factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()

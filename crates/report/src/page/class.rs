@@ -1,4 +1,4 @@
-//! The page of a class: who got what, which scenes few have right, and who makes the same mistake.
+//! The page of a class: the points of all submissions, the hardest scenes, and the submissions with the same mistake.
 use super::{
     document,
     graded::key,
@@ -23,13 +23,13 @@ use std::collections::BTreeMap;
 
 const SCRIPT: &str = include_str!("class.js");
 
-/// The greatest number of characters of a likely mistake or a summary in a table.
+/// The maximum number of characters of a likely mistake or a summary in a table.
 const SHORT: usize = 120;
 
-/// The greatest number of shared mistakes that are not folded: the table begins on the first screen.
+/// The maximum number of shared mistakes that are not folded, so that the table begins on the first screen.
 const FEW: usize = 5;
 
-/// The greatest number of names listed of a cluster.
+/// The maximum number of listed names of a cluster.
 const NAMES: usize = 400;
 
 /// The grades of a class.
@@ -37,9 +37,9 @@ const NAMES: usize = 400;
 pub struct ClassPage<'a> {
     /// The grades.
     pub grades: &'a [Grade],
-    /// The entries that are no submissions.
+    /// The entries that are not submissions.
     pub passed_over: &'a [PassedOver],
-    /// The address of a submission's page, relative to this one.
+    /// A function that returns the address of a submission's page, relative to the class's page.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
 
@@ -71,14 +71,14 @@ struct ClassContent<'a> {
 struct Cluster<'a> {
     heading: String,
     members: Vec<usize>,
-    /// A scene that shows their mistake, and its address.
+    /// A scene that shows the members' mistake, and its address.
     scene: Option<(String, String)>,
     note: Option<&'a CourseNote>,
-    /// The smallest scene on which one of them shows it, for the blackboard.
+    /// The smallest scene on which a member's program shows the mistake, to demonstrate in class.
     smallest: Option<&'a SmallestScene>,
-    /// The first of the scenes that all of them fail, where no mistake is named.
+    /// The first of the scenes that all members fail, if no mistake is named.
     first: Option<String>,
-    /// The number of their mistake, by which they can be shown alone.
+    /// The number of the members' mistake, by which the table can be filtered.
     mistake: Option<usize>,
 }
 
@@ -94,7 +94,7 @@ impl ClassContent<'_> {
         names.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the filters by verdict that leave something, with how much.
+    /// Returns the filters by verdict that match some submissions, each with the number of matches.
     fn states(&self) -> impl Iterator<Item = (&'static str, &'static str, usize)> {
         let count = |wanted: &str| self.class.grades.iter().filter(|grade| state(grade) == wanted).count();
         let states = [
@@ -106,7 +106,7 @@ impl ClassContent<'_> {
         states.into_iter().filter(|(.., count)| *count > 0)
     }
 
-    /// Returns the numbers of the mistakes of a submission, as filters know them.
+    /// Returns the numbers of a submission's mistakes, as used by filters.
     fn mistake_numbers(&self, number: usize) -> String {
         let made = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
         made.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
@@ -153,7 +153,7 @@ impl ClassContent<'_> {
         same_programs(self.class.grades).into_iter().map(cluster).collect()
     }
 
-    /// Returns the address of the first submission's page that shows what goes wrong in a scene.
+    /// Returns the address of the first submission's page that shows a wrong scene.
     fn shows(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
@@ -165,14 +165,14 @@ fn suite(grades: &[Grade]) -> &str {
     grades.first().map_or("", |grade| grade.suite.as_str())
 }
 
-/// Returns the names of the scenes, as the script reads them.
+/// Returns the names of the scenes, in the form that the script reads.
 fn scenes(grades: &[Grade]) -> String {
     let names: Vec<&str> =
         grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
     data(&serde_json::json!(names))
 }
 
-/// Returns points as the script sorts them.
+/// Returns points in the form by which the script sorts.
 fn sort(points: Option<f64>) -> String {
     points.map_or_else(String::new, |points| points.to_string())
 }
@@ -182,19 +182,19 @@ fn points_before(grade: &Grade) -> Option<f64> {
     grade.changes()?.points
 }
 
-/// Returns how many scenes are accepted.
+/// Returns the number of accepted scenes.
 fn accepted_of(grade: &Grade) -> usize {
     grade.count(Verdict::Accepted)
 }
 
-/// Returns the likely mistakes of a submission, or why it is not accepted.
+/// Returns the likely mistakes of a submission, or the reason why it is not accepted.
 fn reason(grade: &Grade) -> String {
     let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
     let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
     if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") }
 }
 
-/// Returns why the rule books differ, and the submissions in which they do, each with the number of scenes.
+/// Returns the causes of differences between the rule books, each with the submissions and their numbers of scenes.
 fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
@@ -215,12 +215,12 @@ fn short(words: &str) -> String {
     if cut.len() < words.len() { cut + "..." } else { cut }
 }
 
-/// Returns whether a scene counts as failed: scenes that were not run, or on which the grader failed, do not.
+/// Returns whether a scene counts as failed; scenes that were not run, or on which the grader failed, do not.
 fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
 
-/// Returns the state of a submission by which rows are filtered and colored.
+/// Returns the state of a submission, by which rows are filtered and colored.
 fn state(grade: &Grade) -> &'static str {
     match grade {
         _ if grade.verdict.is_accepted() => "good",
@@ -229,7 +229,7 @@ fn state(grade: &Grade) -> &'static str {
     }
 }
 
-/// Returns the scenes of a submission in a row.
+/// Returns the letters of a submission's scenes, as one row.
 fn row_of_scenes(grade: &Grade) -> String {
     let letters = grade.groups.iter().map(|group| group.scenes.iter().map(letter_of).collect::<String>());
     heat::html(&letters.collect::<Vec<_>>().join("|"))
@@ -245,7 +245,7 @@ fn letter_of(scene: &SceneGrade) -> char {
     }
 }
 
-/// Returns the class in a few numbers.
+/// Returns the statistics of the class, each with its name.
 fn figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_points);
@@ -262,7 +262,8 @@ fn figures(grades: &[Grade]) -> Vec<(String, String)> {
     rows.into_iter().chain(since).collect()
 }
 
-/// Returns submissions without a likely mistake that fail the same scenes in the same words, the largest cluster first.
+/// Returns groups of submissions without a likely mistake that fail the same scenes for the same reasons, the largest
+/// first.
 fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| likely_mistakes(grade).is_empty()) {
@@ -278,7 +279,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     several
 }
 
-/// Renders how many submissions reach which share of the points.
+/// Renders the histogram of points.
 fn bars(grades: &[Grade]) -> String {
     histogram::html(grades.iter().filter_map(|grade| Some(grade.points? / grade.max_points)))
 }

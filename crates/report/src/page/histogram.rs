@@ -1,17 +1,17 @@
-//! The points of a class as bars. The server's pages show these bars, too.
+//! The histogram of a class's points. The server's pages show it, too.
 use std::fmt::Write;
 
 /// The number of bars.
 const BARS: usize = 10;
 
-/// The height of the highest bar.
+/// The height of the highest bar, in pixels.
 const HEIGHT: usize = 108;
 
-/// Renders how many submissions reach which share of the points, of 1; nothing without any.
+/// Renders a histogram of shares of the points, from 0 to 1; empty without any.
 pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
     let mut counts = [0_usize; BARS];
     for share in shares.filter(|share| share.is_finite()) {
-        // Of the bars that begin at or below the share, the last one; a share of 1 belongs to the last bar.
+        // The last bar that begins at or below the share; a share of 1 belongs to the last bar.
         let bar = (1..BARS).filter(|&bar| share * BARS as f64 >= bar as f64).count();
         counts[bar] += 1;
     }

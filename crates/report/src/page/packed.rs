@@ -1,5 +1,5 @@
-//! Motions as the viewer reads them: doubles, exact to the last bit, deflated and in base64; motions that would take
-//! too much room as rounded positions.
+//! Motions in the form that the viewer reads: exact doubles, deflated and in base64. Motions that would take too much
+//! space become rounded positions.
 //!
 //! A rounded motion is a block of bytes: a count of exact records as an 8-byte integer, these records as doubles, then
 //! for each record and coordinate the difference from the record before, in units, zigzag-coded, seven bits a byte, the
@@ -7,26 +7,26 @@
 use base64::Engine;
 use fosssim_evidence::{Evidence, Track};
 
-/// The greatest size of exact motions of one case on a page, in bytes. The largest course scene (11
-/// particles, 1,601 records) takes 384 KB with both of them.
+/// The maximum size of one case's exact motions on a page, in bytes. The largest course scene (11 particles, 1,601
+/// records) takes 384 KB with both of them.
 pub const EXACT: usize = 540_000;
 
-/// More raw bytes than this are not even tried.
+/// The maximum size of raw motions that are compressed, in bytes; larger ones are rounded immediately.
 const TRIED: usize = 12 * EXACT;
 
-/// The number of exact numbers in a rounded motion: those around steps with details.
+/// The maximum number of exact values in a rounded motion, which are those around steps with details.
 const KEPT: usize = 16_000;
 
-/// The unit of rounded positions, as a part of the bodies' extent.
+/// The number of units of rounded positions in the bodies' extent.
 const UNITS: f64 = 65536.0;
 
-/// The mark of a value that has no number of units, or is no number.
+/// The mark of a value that is NaN, or too large to be a number of units.
 const BEYOND: i64 = 1 << 40;
 
-/// The precision with which motions are kept.
+/// The precision of stored motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
-    /// Exactly where there is room.
+    /// Exact, if there is space for it; otherwise rounded.
     AsRoomAllows,
     /// Rounded.
     Rounded,
@@ -35,13 +35,13 @@ pub(super) enum Precision {
 /// The rounding of motions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounding {
-    /// The unit of positions.
+    /// The unit of positions, a power of two.
     pub(super) unit: f64,
-    /// The records that are exact, counted from the first that is kept.
+    /// The indices of the exact records, from the first that is stored.
     pub(super) exact: Vec<usize>,
 }
 
-/// Motions of one case in base64.
+/// The motions of one case, in base64.
 #[derive(Debug)]
 pub(super) struct PackedMotions {
     pub(super) blocks: Vec<String>,
@@ -73,7 +73,7 @@ fn base64(bytes: &[u8]) -> String {
     base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(bytes, 8))
 }
 
-/// Returns a power of two, so that multiples are exact.
+/// Returns the unit of positions, a power of two, so that multiples are exact.
 fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (_, track) in tracks {
@@ -87,7 +87,7 @@ fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     (extent / UNITS).log2().floor().exp2()
 }
 
-/// Returns the records around steps with details, the first wrong steps before others.
+/// Returns the indices of the records around steps with details, first those around the first wrong steps.
 fn exact(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
     let room = KEPT / (4 * layout.particles).max(1);

@@ -1,30 +1,30 @@
-//! Which parts of each scene's card fit on a page.
+//! The size budget of a page, which decides the parts of each scene's card that fit.
 use super::{Card, script};
 
-/// The greatest size of a page in bytes: it is mailed, and opened on old machines.
+/// The maximum size of a page, in bytes: it is sent by mail, and opened on old machines.
 pub const BUDGET: usize = 2_950_000;
 
-/// The bytes of a page for the output of programs, of all scenes together.
+/// The maximum number of bytes on a page for the output of programs, in all scenes together.
 pub(super) const OUTPUTS: usize = 200_000;
 
-/// The part of it for pictures and tables, before the first motion has room.
+/// The part of the budget for pictures and tables, before the first motion gets space.
 const STILL: usize = BUDGET / 3 * 2;
 
-/// Which parts of a scene's card fit on the page; each has those before it, too.
+/// The parts of a scene's card that fit on the page; each level includes the lower ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
-    /// The card's words only.
+    /// Only the text.
     Words,
-    /// Pictures.
+    /// Also the pictures.
     Pictures,
-    /// The rounded motion.
+    /// Also the rounded motion.
     Rounded,
-    /// The exact motion.
+    /// The exact motion instead of the rounded one.
     Exact,
 }
 
-/// Shares out the room: words always, then pictures in the order of the cards; then their motions as small as they get;
-/// then, again in the order of the cards, exact motions.
+/// Distributes the size budget. Text always fits. Pictures come next, in the order of the cards, then motions in their
+/// smallest form, and last exact motions, again in the order of the cards.
 pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
     let count = cards.clone().count();
     let mut rooms = vec![Room::Words; count];
@@ -57,7 +57,7 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
     rooms
 }
 
-/// Returns the text of the page about cards that have no room on it.
+/// Returns the page's text about cards that do not fit.
 pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
     let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
     let of: Vec<Room> = with_motion.map(|(_, room)| *room).collect();

@@ -1,14 +1,15 @@
-//! All steps in a row: right, wrong by itself, wrong as a consequence. Heights distinguish them without color.
+//! The strip of all steps: right, wrong by itself, or wrong as a consequence. Heights distinguish the kinds without
+//! color.
 use fosssim_evidence::{Step, StepClass};
 use std::fmt::Write;
 
-/// The strip's size.
+/// The width of the strip.
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 26.0;
-/// More steps than this share columns, which show the worst of theirs.
+/// The maximum number of columns. More steps share columns, which show their worst step.
 const COLUMNS: usize = 480;
 
-/// Renders the strip, with its counts in words.
+/// Renders the strip, and its counts as text.
 pub(super) fn html(steps: &[Step]) -> String {
     let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(

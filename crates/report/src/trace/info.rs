@@ -1,4 +1,4 @@
-//! The contents of a trace, for programs. For people the summary's own text is the report.
+//! The contents of a trace as JSON. For people, the summary's own text is the report.
 use super::super::view::SCHEMA;
 use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};
@@ -32,7 +32,7 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     format!("{value:#}\n")
 }
 
-/// Returns a malformation and its place.
+/// Returns the damage of a trace and its place.
 pub(super) fn place(error: &TraceError) -> Value {
     json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
 }

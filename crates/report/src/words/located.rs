@@ -1,10 +1,10 @@
-//! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
+//! Sentences about the common properties of scenes in which a program crashes or exceeds a limit.
 use fosssim_findings::located::{Content, LocatedFailure};
 
-/// The greatest number of other contents that are named if the scenes can't distinguish them from the first one.
+/// The maximum number of named contents that the scenes can't distinguish from the first one.
 const NAMED: usize = 2;
 
-/// Returns the contents that they have in common, with counts, and where the first of them ends.
+/// Returns the common contents, with counts, and the end of the first failing scene.
 #[must_use]
 pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure { failing, contents, failed, with, without, first, step } = found;
@@ -29,7 +29,7 @@ pub fn describe_located(found: &LocatedFailure) -> String {
     text
 }
 
-/// Returns `in which the failsafe moves a zone (held by: a half-plane)`.
+/// Returns a relative clause on the contents, such as `in which the failsafe moves a zone (held by: a half-plane)`.
 fn place_of(content: &Content) -> String {
     let Content { family, value } = content;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));

@@ -1,4 +1,4 @@
-//! The places in the data folder.
+//! The folders and files in the data folder.
 use super::arguments::StorageArguments;
 use crate::{
     db::{Address, Database},
@@ -12,22 +12,22 @@ use std::{
     time::Duration,
 };
 
-/// The longest time that an unfinished upload or job is kept.
+/// The age after which an unfinished upload or job is removed.
 const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
 
 /// The data folder's parts.
 #[derive(Debug, Clone)]
 pub(super) struct ServiceFolders {
-    /// Database and store, readable only by the server's user.
+    /// The folder of database and store, readable only by the server's user.
     pub(super) data: PathBuf,
     pub(super) incoming: PathBuf,
     pub(super) backups: PathBuf,
-    /// A program with a mistake, for who tries the service.
+    /// The file with a flawed program, for people who try the service.
     pub(super) flawed_program: PathBuf,
 }
 
 impl ServiceFolders {
-    /// Finds the data folder of a server that was here; makes none.
+    /// Finds the data folder of an earlier server, without creating one.
     pub(super) fn find(place: &StorageArguments) -> Result<Self> {
         if !place.data.exists() {
             return Err(missing("data folder", &place.data));
@@ -35,7 +35,7 @@ impl ServiceFolders {
         Self::find_database(place)
     }
 
-    /// Finds the folder for commands that need the database only, which may be elsewhere.
+    /// Finds the folder for commands that need only the database, which may be elsewhere.
     pub(super) fn find_database(place: &StorageArguments) -> Result<Self> {
         if place.database.is_none() && !place.data.exists() {
             return Err(missing("data folder", &place.data));
@@ -46,7 +46,7 @@ impl ServiceFolders {
         }
     }
 
-    /// Makes the data folder, or checks that it is the server's alone.
+    /// Creates the data folder, or checks that only the server can access it.
     pub(super) fn open(place: &StorageArguments) -> Result<Self> {
         let data = std::path::absolute(&place.data)?;
         let data = data.as_path();
@@ -84,8 +84,7 @@ impl ServiceFolders {
         }
     }
 
-    /// Makes the folders of uploads and of jobs, and removes what dead servers and workers left behind in them long
-    /// ago.
+    /// Creates the folders of uploads and jobs, and removes old leftovers of killed servers and workers.
     pub(super) fn clear(&self) -> Result<()> {
         for folder in [self.incoming.clone(), self.data.join("work")] {
             fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;

@@ -1,12 +1,12 @@
-//! `health`: whether a server or a worker is well, by the exit code: for probes of containers, which have no other
-//! tool.
+//! The command `health`, which reports by its exit code whether a server or a worker is healthy, for probes in
+//! containers without other tools.
 use super::{arguments::HealthArguments, heartbeat};
 use std::time::Duration;
 
-/// The longest time that the server may take.
+/// The maximum time to wait for the server's answer.
 const PATIENCE: Duration = Duration::from_secs(5);
 
-/// Returns whether it is.
+/// Prints the state of the server or worker, and returns whether it is healthy.
 pub(super) fn run(arguments: &HealthArguments) -> bool {
     let Some(server) = &arguments.server else {
         let alive = heartbeat::is_alive(&arguments.data);

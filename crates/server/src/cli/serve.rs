@@ -1,4 +1,4 @@
-//! `serve`: the server, with workers of its own.
+//! The command `serve`: the server, with its own workers.
 use super::{
     arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments},
     folders::ServiceFolders,
@@ -27,21 +27,21 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-/// A day in seconds.
+/// The number of seconds of a day.
 const DAY: u64 = 24 * 3600;
 
-/// A mebibyte.
+/// The number of bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// The longest time that the grader may take to answer.
+/// The maximum time to wait for the grader's answer.
 const ANSWER: Duration = Duration::from_secs(20);
 
-/// The time between two searches for data that are no longer kept.
+/// The time between two searches for expired data.
 const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
 
 pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let stop = until_signalled()?;
-    // First of all: a server that can't listen leaves nothing behind.
+    // Listen first, so that a server that can't listen changes nothing.
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
         format!("cannot listen on {}; name another address by --listen ADDRESS:PORT", arguments.listen)
     })?;
@@ -114,7 +114,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     Ok(())
 }
 
-/// Returns the provider at which people sign in. Its secret is no option, which lists of processes show.
+/// Returns the provider at which people sign in. Its secret is not an option, because lists of processes show options.
 fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     let ProviderArguments { oidc_issuer, oidc_client, oidc_secret_file, oidc_label, oidc_domain } = arguments;
     let (Some(issuer), Some(client)) = (oidc_issuer, oidc_client) else { return Ok(None) };
@@ -126,8 +126,8 @@ fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     Ok(Some(Provider::new(issuer.clone(), client, secret, oidc_label.clone(), oidc_domain.clone())?))
 }
 
-/// Prints to standard output, for people and scripts, where the server listens and how to sign in. The log is on
-/// standard error and holds no secrets. With an example, it prints also where the example's program is.
+/// Prints the server's address and a way to sign in to standard output, for people and scripts. The log is on standard
+/// error and contains no secrets. With an example, the path of its program is printed, too.
 async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, grader: Option<&Path>) -> Result<()> {
     let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
     let mut output = std::io::stdout();
@@ -151,7 +151,7 @@ async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, gr
     Ok(output.flush()?)
 }
 
-/// Removes from time to time, forever, what is older than is kept, and what a killed server left behind.
+/// Deletes expired artifacts and leftovers of killed servers, periodically.
 async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
         match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
@@ -163,7 +163,7 @@ async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
     }
 }
 
-/// Gets the suites that come with the grader. A server whose workers are elsewhere may have no grader.
+/// Reads the names of the grader's suites. A server whose workers are elsewhere may have no grader.
 async fn suites(named: Option<&Path>) -> Suites {
     let asked = async { Ok(Suites::read(&answer(named, &["suite", "list", "--format", "json"]).await?)?) };
     asked.await.unwrap_or_else(|error: anyhow::Error| {
@@ -172,7 +172,7 @@ async fn suites(named: Option<&Path>) -> Suites {
     })
 }
 
-/// Gets the page that checks traces in a browser from the grader. A grader that was built without it has none.
+/// Reads the page that checks traces in a browser from the grader; `None` if the grader was built without it.
 async fn checker(named: Option<&Path>) -> Option<String> {
     let asked = async { Ok(String::from_utf8(answer(named, &["page", "--output", "-"]).await?)?) };
     let asked = asked.await.inspect_err(|error: &anyhow::Error| {
@@ -181,7 +181,7 @@ async fn checker(named: Option<&Path>) -> Option<String> {
     asked.ok().filter(|page| !page.is_empty())
 }
 
-/// Returns the grader's answer to these words.
+/// Runs the grader with arguments and returns its standard output.
 async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
     let mut command = tokio::process::Command::new(grader(named)?);
     command.args(words).stdin(std::process::Stdio::null()).kill_on_drop(true);
@@ -192,7 +192,7 @@ async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
     Ok(said.stdout)
 }
 
-/// Updates the tables; a SQLite database that holds something is copied before.
+/// Updates the tables. A SQLite database with data is copied before.
 async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
@@ -207,8 +207,8 @@ async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address
     Ok(())
 }
 
-/// Copies a SQLite database into a new file, which gets its name only when it is whole. A file that a killed server
-/// left is removed.
+/// Copies a SQLite database into a new file, which gets its name when it is complete. An incomplete file of a killed
+/// server is removed.
 async fn copy_before(database: &Database, backups: &Path, version: i64) -> Result<PathBuf> {
     std::fs::create_dir_all(backups)?;
     for entry in std::fs::read_dir(backups)?.flatten() {

@@ -1,4 +1,4 @@
-//! `worker`: grades what waits in the queue.
+//! The command `worker`, which grades the jobs of the queue.
 use super::{
     arguments::{WorkerArguments, WorkloadArguments},
     folders::ServiceFolders,
@@ -57,7 +57,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let token = std::fs::read_to_string(token_file)
         .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
     let token = token.trim();
-    // The text is not repeated: it may be another secret.
+    // The text is not repeated, because it may be another secret.
     if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
         bail!("{} holds no worker's token (fsw_...)", token_file.display());
     }
@@ -68,7 +68,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let source = RemoteSource::new(server, token, &name);
     let folder = folders.work(&name);
     heartbeat::say_ready();
-    // A worker that can't reach its server is well: it keeps trying, and keeps what it holds.
+    // A worker that can't reach its server is healthy: it keeps trying, and keeps its jobs.
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     let slots = slots(arguments.slots);
     tracing::info!(worker = name, server, slots, grader = %grader.display(), "working");
@@ -80,24 +80,24 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     Ok(())
 }
 
-/// Makes a worker's name unique: the process adds what distinguishes two workers of one name.
+/// Makes a worker's name unique, by adding the process number.
 fn unique_name(name: Option<&str>) -> String {
     let name = strip_controls(name.map_or_else(host, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
 }
 
-/// Returns the requested slots, or one per core.
+/// Returns the requested number of slots, or the number of cores.
 fn slots(slots: Option<NonZeroUsize>) -> usize {
     slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// Returns the queue's patience as the arguments have it.
+/// Returns the queue's policy from the arguments.
 pub(super) fn policy(work: &WorkloadArguments) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
 
-/// Returns the named grader, or the one next to this program.
+/// Returns the given grader, or the one in the folder of this program.
 pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
     let path = match named {
         Some(path) => path.to_owned(),
@@ -109,7 +109,7 @@ pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
     std::path::absolute(&path).context("the grader's path")
 }
 
-/// Workers that hold the database themselves.
+/// Workers that access the database directly.
 pub(super) struct LocalWorkers {
     pub(super) folders: ServiceFolders,
     pub(super) database: Database,
@@ -152,7 +152,7 @@ fn host() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
 }
 
-/// Returns a name as a file name.
+/// Returns a name without control characters, for use as a file name.
 fn strip_controls(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let plain: String = name.chars().map(safe).take(60).collect();

@@ -1,4 +1,5 @@
-//! Asking platforms: for tokens, and by these for their services. Answers are short, come soon, and lead nowhere else.
+//! Requests to platforms, for tokens and to their services. Answers have limits of size and time, and redirections are
+//! not followed.
 use super::{Platform, keys};
 use crate::{
     db::{Database, DbError},
@@ -23,19 +24,19 @@ pub(crate) mod scope {
     pub(crate) const MEMBERS: &str = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
 }
 
-/// The longest time that a platform may take.
+/// The maximum time to wait for a platform's answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// The longest answer that is read.
+/// The maximum size of an answer, in bytes.
 const ANSWER: u64 = 8 << 20;
 
-/// The time for which an assertion of ours is valid, in seconds.
+/// The lifetime of this service's assertions, in seconds.
 const ASSERTION: u64 = 300;
 
-/// The time before their end at which tokens are renewed.
+/// The time before expiry at which tokens are renewed.
 const MARGIN: Duration = Duration::from_secs(30);
 
-/// The longest wait that a platform may request.
+/// The maximum wait that a platform can request.
 const LONGEST_WAIT: Duration = Duration::from_secs(3600);
 
 /// The reason why a platform did not fulfill a request.
@@ -44,9 +45,9 @@ pub enum ServiceFault {
     /// The platform does not answer, or is overloaded; a later request may succeed.
     #[error("it does not answer as it should: {why}")]
     Away {
-        /// The platform's message, or what happened.
+        /// The platform's message, or a description of the error.
         why: String,
-        /// The wait before the next request that it wishes.
+        /// The wait that the platform requests before the next request.
         after: Option<Duration>,
     },
     /// The platform rejects the request.
@@ -71,21 +72,21 @@ impl From<DbError> for ServiceFault {
 pub(super) struct ServiceAnswer {
     pub(super) status: u16,
     body: Vec<u8>,
-    /// The header `Link`.
+    /// The value of the header `Link`.
     pub(super) link: Option<String>,
     after: Option<Duration>,
 }
 
 impl ServiceAnswer {
-    /// Reads the answer's content, which is `what` in words.
+    /// Parses the answer's content; `what` names it in errors.
     pub(super) fn read<T: DeserializeOwned>(&self, what: &str) -> Result<T, ServiceFault> {
         let read = serde_json::from_slice(&self.body);
         read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
     }
 
-    /// Returns the answer, if it reports success.
+    /// Returns the answer if it reports success.
     pub(super) fn successful(self) -> Result<Self, ServiceFault> {
-        // The beginning of its words, for people: one line.
+        // The beginning of the platform's text, on one line, for people.
         let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
         let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = format!("{} {said}", self.status);
@@ -99,19 +100,19 @@ impl ServiceAnswer {
     }
 }
 
-/// A request to a service.
+/// A request to a platform's service.
 #[derive(Debug, Clone)]
 pub(super) struct Ask {
     pub(super) address: String,
     pub(super) accept: &'static str,
-    /// A body and its type: then it is a POST.
+    /// The body and its type; `None` for a GET request.
     pub(super) body: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Tokens by platform and scope, each with its end.
+/// The tokens by platform and scope, each with its expiry.
 type Tokens = HashMap<(i64, String), (String, Instant)>;
 
-/// Asks platforms.
+/// The client for requests to platforms.
 pub struct Client {
     agent: Agent,
     pub(super) over_http: bool,
@@ -156,7 +157,7 @@ impl Client {
         asked.map_err(ServiceFault::from_outage)?
     }
 
-    /// Calls a service, with a token for this scope; once more with a new one when the platform no longer knows it.
+    /// Calls a service with a token for a scope, and again with a new token if the platform rejects the first.
     pub(super) async fn call(
         &self,
         database: &Database,
@@ -174,7 +175,7 @@ impl Client {
         self.send(platform, ask, Some(&token)).await?.successful()
     }
 
-    /// Returns a token for a scope, by an assertion that this service signed (SEC 4.1, RFC 7523).
+    /// Returns a token for a scope, requested with an assertion that this service signed (SEC 4.1, RFC 7523).
     async fn token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
         let key = (platform.id, scope.to_owned());
         if let Some((token, ends)) = self.tokens.lock().unwrap_or_else(PoisonError::into_inner).get(&key)
@@ -215,7 +216,7 @@ impl Client {
     }
 }
 
-/// Seconds since 1970.
+/// Returns the number of seconds since 1970.
 pub(super) fn now() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
 }
@@ -235,7 +236,7 @@ fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) ->
     let mut answer = answer.map_err(ServiceFault::from_outage)?;
     let header = |name: &str| answer.headers().get(name).and_then(|value| value.to_str().ok()).map(str::to_owned);
     let link = header("link");
-    // In seconds; as a date it is passed over, and the queue's own patience holds.
+    // The value is in seconds; a date is ignored, and the queue's own delay applies.
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::from_outage)?;

@@ -1,5 +1,5 @@
-//! The service's own keys. The first is made on demand. A new key signs after an hour, when platforms had the time to
-//! read it, and the one before it is published until the next.
+//! The service's own keys. The first is created on demand. A new key signs after an hour, so that platforms have time
+//! to read it, and the one before it is published until the next.
 use super::crypto;
 use crate::{
     db::{Database, DbError, Row, Transaction},
@@ -10,10 +10,10 @@ use rsa::{RsaPrivateKey, pkcs1::EncodeRsaPrivateKey, rand_core::OsRng, traits::P
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// Bits of a key; what every platform takes.
+/// The number of bits of a key, which every platform accepts.
 const BITS: usize = 2048;
 
-/// The time in which a new key is only published.
+/// The time for which a new key is published before it signs, in milliseconds.
 const FIRST_TOLD: i64 = 3600 * 1000;
 
 /// A key of the service.
@@ -29,9 +29,10 @@ impl SigningKey {
     }
 }
 
-/// Makes a key, which signs from an hour on, or immediately if it is the first.
+/// Creates a key, which signs after an hour, or immediately if it is the first.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let made = tokio::task::spawn_blocking(make).await.map_err(|error| DbError::Other(error.to_string()))?;
@@ -40,7 +41,7 @@ pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let statement =
         "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
     transaction.execute(statement, values![secret::random_hex(), private, modulus, exponent]).await?;
-    // The new key, and the key that signs so far.
+    // Keep the new key, and the key that signs at present.
     let statement = "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
         AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)";
     transaction.execute(statement, values![]).await?;
@@ -62,7 +63,7 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
     transaction.rows(statement, values![FIRST_TOLD]).await
 }
 
-/// Returns all keys, the newest first; the first is made when there is none.
+/// Returns all keys, the newest first, and creates the first one if there is none.
 async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     let found = rows(&mut database.read().await?).await?;
     if !found.is_empty() {
@@ -72,7 +73,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     rows(&mut database.read().await?).await
 }
 
-/// Returns the key that signs: the newest that platforms had the time to read of, or the oldest.
+/// Returns the key that signs: the newest that platforms had time to read, or the oldest.
 pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));

@@ -7,7 +7,7 @@ use super::{
 use crate::db::Database;
 use serde::Deserialize;
 
-/// More pages or members than this are no course.
+/// The maximum number of pages of a list of members.
 const PAGES: usize = 500;
 const MEMBERS: usize = 50_000;
 
@@ -34,7 +34,8 @@ struct Member {
 /// Reads all pages of the members of a course.
 ///
 /// # Errors
-/// The platform's error, or what is wrong with its answer; then none of it is used.
+///
+/// The platform's error, or the fault of its answer; no members are used then.
 pub async fn fetch(
     client: &Client,
     database: &Database,
@@ -75,7 +76,7 @@ fn following(header: &str) -> Option<String> {
     let mut rest = header;
     while let Some((_, after)) = rest.split_once('<') {
         let (address, after) = after.split_once('>')?;
-        // Parameters reach to the next link, which begins with a bracket.
+        // The parameters end at the next link, which begins with a bracket.
         let (parameters, further) = after.split_at(after.find('<').unwrap_or(after.len()));
         let is_next = parameters.split([';', ',']).any(|parameter| {
             parameter.split_once('=').is_some_and(|(name, value)| {

@@ -1,5 +1,5 @@
-//! The keys of platforms, as they publish them: kept for an hour, and read again when one is not known, because
-//! platforms change their keys.
+//! The keys that platforms publish. They are kept for an hour, and read again if one is unknown, because platforms
+//! change their keys.
 use super::{Client, Platform, Rejection, crypto::PublicKey};
 use serde::Deserialize;
 use std::{
@@ -11,13 +11,13 @@ use std::{
 /// The time for which keys are used without reading them again.
 const FRESH: Duration = Duration::from_secs(3600);
 
-/// When the platform does not answer, earlier keys are valid for a day.
+/// The time for which keys are used if the platform does not answer.
 const STALE: Duration = Duration::from_secs(24 * 3600);
 
-/// The pause between two requests because of unknown keys: strangers may name any.
+/// The pause between two requests because of unknown keys, which strangers can name freely.
 const PAUSE: Duration = Duration::from_secs(5);
 
-/// The keys of platforms, by number.
+/// The keys of platforms, by the platform's number.
 #[derive(Debug, Default)]
 pub(super) struct Trust(Mutex<HashMap<i64, KnownKeys>>);
 
@@ -44,7 +44,7 @@ struct PublishedKey {
     r#use: Option<String>,
 }
 
-/// Returns the keys of a set that sign by RS256; others are not ours to judge.
+/// Returns the keys of a set for RS256; others are ignored.
 fn usable(set: KeySet) -> Vec<PublicKey> {
     let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<PublishedKey>(key).ok());
     let usable = keys.filter(|key| {
@@ -61,7 +61,7 @@ impl Trust {
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
 
-    /// Returns a platform's key of this name.
+    /// Returns the platform's key with a name.
     pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
         let named = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.find_keys(platform);

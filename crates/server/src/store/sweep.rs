@@ -1,4 +1,4 @@
-//! Removes unnamed artifacts in batches, so that memory is the same for any number of artifacts.
+//! Removes unreferenced artifacts in batches, so that memory is the same for any number of artifacts.
 use super::{ASIDE, Digest, KEPT, Key, Store, StoreError, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
@@ -9,20 +9,21 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The number of artifacts in one query.
+/// The number of artifacts per query.
 const BATCH: usize = 500;
 
 impl Store {
-    /// Removes every unnamed artifact that is older than `least`, and returns their number. `named` finds the named
-    /// ones of some digests.
+    /// Removes every unreferenced artifact that is older than `least`, and returns their number. `named` finds the
+    /// referenced ones among given digests.
     ///
-    /// An artifact that is stored at this very moment is not lost: it is put aside first, where it can still be read,
-    /// and checked again immediately and in every later run. If it is named by then it comes back. It is removed only
-    /// after it was there unnamed for `least`. A server that was started on the wrong database by mistake has therefore
-    /// removed nothing if this is noticed within that time.
+    /// An artifact that is being stored at the same time is not lost. It is first moved to the trash, where it can
+    /// still be read, and is checked again immediately and in every later run. If it is referenced by then, it is
+    /// restored. It is removed only after it was in the trash for `least`. A server that was started with the wrong
+    /// database by mistake therefore removes nothing within that time.
     ///
     /// # Errors
-    /// When the store fails, or the named digests can't be found. Artifacts that were put aside are checked again the
+    ///
+    /// When the store fails, or the referenced digests can't be found. Artifacts in the trash are checked again the
     /// next time.
     pub async fn give_up<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
         &self,
@@ -37,7 +38,7 @@ impl Store {
             let named = named(digests.clone()).await?;
             for digest in digests.iter().filter(|digest| !named.contains(digest)) {
                 self.rename(&digest.key(KEPT), &digest.key(ASIDE)).await?;
-                // In a bucket it is a copy, and new.
+                // In a bucket it is a new copy.
                 if let Some(folder) = &self.folder {
                     renew(&folder.join(digest.key(ASIDE).as_ref()));
                 }
@@ -67,12 +68,12 @@ impl Store {
         Ok(given_up)
     }
 
-    /// Returns every artifact, one after the other; an artifact that is put aside meanwhile may come twice.
+    /// Returns all artifacts; one that is moved to the trash during the listing may be returned twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
         self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
     }
 
-    /// Moves an object, unless another server was faster.
+    /// Moves an object, unless another server has moved it.
     async fn rename(&self, from: &Key, to: &Key) -> Result<(), StoreError> {
         match self.objects.rename(from, to).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
@@ -85,7 +86,7 @@ impl Store {
         let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
         let found = listing.try_filter_map(async |meta| {
             let parts: Vec<String> = meta.location.parts().map(|part| part.as_ref().to_owned()).collect();
-            // Anything else there is none of ours.
+            // Skip every other file: this store did not write it.
             let [_, first, rest] = parts.as_slice() else { return Ok(None) };
             Ok(format!("{first}{rest}").parse().ok().map(|digest| (digest, age(&meta))))
         });
@@ -93,7 +94,7 @@ impl Store {
     }
 }
 
-/// Renews the age of a file; a file that can't be touched keeps its own.
+/// Sets the age of a file to zero; a file that can't be touched keeps its age.
 fn renew(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {
@@ -101,8 +102,8 @@ fn renew(file: &Path) {
     }
 }
 
-/// Removes parts of artifacts that a server left behind when it was killed; how many there were. They are called
-/// `NAME#NUMBER` until they are whole, and listings leave them out.
+/// Removes incomplete artifacts that a killed server left, and returns their number. They are called `NAME#NUMBER`
+/// until they are complete, and listings leave them out.
 fn remove_parts(folder: &Path, least: Duration) -> usize {
     let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
     let folders = [KEPT, ASIDE].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));

@@ -1,4 +1,5 @@
-//! The description of the API (OpenAPI 3.1): the handlers' descriptions, completed by what holds for all.
+//! The description of the API (OpenAPI 3.1): the descriptions of the handlers, completed by everything that they have
+//! in common.
 use super::who::cookie_name;
 use crate::{
     problem::Problem,
@@ -17,7 +18,7 @@ use utoipa::{
     },
 };
 
-/// The name of an upload's body.
+/// The media type of an upload's body.
 const FILE: &str = "application/octet-stream";
 
 /// The largest number that JSON can hold in every language.
@@ -46,13 +47,13 @@ const MOST: i64 = (1 << 53) - 1;
 )]
 struct Base;
 
-/// Returns the answers that are given before any handler.
+/// Returns the answers that are given before any handler runs.
 pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
 
-/// Completes the description by what holds for every operation: how one signs in, the form of a name in an address, and
-/// answers that their status explains.
+/// Adds to the description what applies to every operation: ways to sign in, the form of names in addresses, and common
+/// answers.
 pub(super) fn complete(api: &mut OpenApi) {
     let components = api.components.get_or_insert_default();
     for (name, scheme) in schemes() {
@@ -67,8 +68,8 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// Opens types that are extended: a type that allows no other fields can't be part of a larger type with more; the
-/// larger type then has these fields as its own.
+/// Removes the ban of additional fields from types that are part of larger types; otherwise the larger type's own
+/// fields would be invalid.
 fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()
@@ -111,7 +112,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
 }
 
-/// Describes the parts of an address as parameters, and that every request may be rejected.
+/// Describes the parts of an address as parameters, and adds that every request may be rejected.
 fn name_parts(path: &str, operation: &mut Operation) {
     let names = path.split('{').skip(1).filter_map(|part| part.split('}').next());
     let parts = names.map(|name| {
@@ -128,7 +129,7 @@ fn name_parts(path: &str, operation: &mut Operation) {
 fn complete_operation(operation: &mut Operation) {
     let is_of = |tag: &str| operation.tags.iter().flatten().any(|of| of == tag);
     let required = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
-    // A handler that accepts less than these describes that itself.
+    // A handler that accepts fewer ways to sign in describes them itself.
     let security = match () {
         () if is_of("operations") => Vec::new(),
         () if is_of("workers") => vec![required("worker")],
@@ -166,7 +167,7 @@ fn complete_operation(operation: &mut Operation) {
     }
 }
 
-/// Completes the schema of a part of an address or a header, by its name.
+/// Completes the schema of a part of an address or a header, according to its name.
 fn complete_parameter(parameter: &mut Parameter) {
     let named = |name: &str| -> RefOr<Schema> { Ref::from_schema_name(name).into() };
     let text = |pattern: &str| -> RefOr<Schema> {
@@ -192,20 +193,20 @@ fn complete_parameter(parameter: &mut Parameter) {
     parameter.description.get_or_insert(text.to_owned());
 }
 
-/// Returns a number that JSON can hold in every language.
+/// Returns the schema of a number that JSON can hold in every language.
 fn number(least: i64) -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Int64);
     let number = ObjectBuilder::new().schema_type(Type::Integer).format(Some(format));
     number.minimum(Some(least)).maximum(Some(MOST)).into()
 }
 
-/// Returns the bytes of a file.
+/// Returns the schema of the bytes of a file.
 fn bytes() -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// Returns the description of an answer without one.
+/// Returns the description of an answer that has none.
 fn answer(status: &str) -> String {
     if status == "default" {
         return "Rejected or failed: what is wrong, and what to do about it".to_owned();

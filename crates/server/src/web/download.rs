@@ -1,4 +1,4 @@
-//! Sending artifacts: in pieces as they are read, and not at all to who has them.
+//! Sends artifacts in pieces while they are read, or not at all if the client has them.
 use crate::{
     domain::{Member, Transfer},
     problem::Problem,
@@ -11,7 +11,7 @@ use axum::{
 };
 use futures_util::TryStreamExt;
 
-/// Answers with an artifact, unless the client knows it by its request's headers.
+/// Answers with an artifact, unless the request's headers say that the client has it.
 pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
     let transfer = member.transfer()?;
     let tag = format!("\"{}\"", artifact.digest);
@@ -26,10 +26,10 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
     Ok(response)
 }
 
-/// Returns all of an artifact.
+/// Returns an answer with a whole artifact.
 pub(super) fn whole(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
-        // The answer breaks off, so that the client sees that bytes are missing.
+        // The answer is aborted, so that the client notices that bytes are missing.
         tracing::error!(%error, "an answer broke off");
         let _of_this_answer = &transfer;
     });

@@ -1,4 +1,4 @@
-//! Receiving files: as they come, into a file of the server's own, never whole in memory.
+//! Reception of files, which are written to a file of the server while they arrive, and are never completely in memory.
 use crate::{
     domain::{App, is_file_name},
     problem::Problem,
@@ -24,19 +24,20 @@ use std::{
 use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
-/// The longest time that an upload may take in addition to its fair time, in pauses of its body.
+/// The maximum additional time of an upload, for pauses of its body, in multiples of the patience.
 const PAUSES: u32 = 20;
 
-/// Returns the time in which an upload of this size must arrive to count as arrived at its beginning: half a minute,
-/// and a second for each 32 KiB. This prevents that an upload begins before the due date and is written later.
+/// Returns the time in which an upload of a size must arrive to count as arrived at its start: half a minute, and a
+/// second for each 32 KiB. Otherwise an upload could start before the due date and be written later.
 pub(super) fn fair_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
 
-/// The bytes of a form around its file: boundaries, names, short fields, and what is read of a connection at one time.
+/// The maximum number of bytes of a form around its file: boundaries, names, short fields, and the read buffer of a
+/// connection.
 const BESIDE: u64 = 1024 * 1024;
 
-/// Counts the bytes of a form that arrived and were not taken: they are in memory, and a form may have nothing else.
+/// Counts the bytes of a form that arrived and were not processed. They are in memory, so their number is limited.
 #[derive(Clone, Default)]
 struct UntakenBytes(Arc<AtomicU64>);
 
@@ -51,7 +52,7 @@ impl UntakenBytes {
     }
 }
 
-/// A file that arrived.
+/// A file that was received.
 pub(super) struct ReceivedFile {
     /// The place of the file until it is stored.
     pub(super) file: TempPath,
@@ -59,17 +60,17 @@ pub(super) struct ReceivedFile {
     pub(super) name: Option<String>,
     /// The upload's form (a program, sources, traces), if the request named it.
     pub(super) form: Option<String>,
-    /// The sender's name for this upload.
+    /// The sender's key for the upload.
     pub(super) key: Option<String>,
 }
 
-/// The folder for uploads, and their longest pause.
+/// The folder for uploads, and their maximum pause.
 struct Place<'a> {
     incoming: &'a Path,
     patience: Duration,
 }
 
-/// Receives the body of a request: the file itself, or a form with a field `file`.
+/// Receives the body of a request, which is the file itself, or a form with a field `file`.
 pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     if let Err(problem) = app.ensure_room() {
         return Err(refuse(app, request, most, problem).await);
@@ -77,8 +78,8 @@ pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Re
     receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
-/// Rejects an upload before anything of it is stored. Its body is read and dropped: many programs read the answer only
-/// when they have sent everything, and would find a broken connection instead.
+/// Rejects an upload before anything is stored. The body is read and dropped, because many programs read the answer
+/// only after they have sent everything, and would otherwise see a broken connection.
 pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
@@ -96,12 +97,12 @@ pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Prob
     problem
 }
 
-/// Receives a form with an upload that comes in pieces of this many bytes, into a folder that is empty again
-/// afterwards; the fuzzer of uploads, and tests, call it. Returns the size of the file, and the form's name, kind and
-/// key.
+/// Receives a form that arrives in pieces of `size` bytes, into a folder that is empty again afterwards; only the
+/// fuzzer of uploads and tests call it. Returns the size of the file, and the form's name, kind and key.
 ///
 /// # Errors
-/// The fault of the form.
+///
+/// The error in the form.
 pub async fn receive_form(
     incoming: &Path,
     body: &[u8],
@@ -166,7 +167,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
-    // A browser sends an empty field when no file was chosen.
+    // A browser sends an empty field if no file was chosen.
     if name.as_deref() == Some("") && std::fs::metadata(&file)?.len() == 0 {
         return Err(Problem::invalid("no file was chosen"));
     }
@@ -186,7 +187,7 @@ async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Fiel
     }
 }
 
-/// Writes a stream into a file of the server's own.
+/// Writes a stream into a new file of the server.
 async fn to_file<E: Display>(
     place: &Place<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
@@ -225,7 +226,7 @@ async fn to_file<E: Display>(
     Ok(path)
 }
 
-/// Returns a name that is safe in reports and messages: the browser's name, made harmless.
+/// Returns the browser's name of a file in a form that is safe in reports and messages.
 pub(super) fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -239,11 +240,12 @@ pub(super) fn is_program(start: &[u8]) -> bool {
     FileKind::from_start(start) == FileKind::Program
 }
 
-/// Returns the form of an archive, if the archive is valid: sources must hold the `program`, unless the suite builds
-/// it. It runs in a process of its own (`web::look`).
+/// Returns the form of an archive, if the archive is valid: sources must contain the `program`, unless the suite builds
+/// it. It runs in a separate process (`web::look`).
 ///
 /// # Errors
-/// The reason why it is rejected.
+///
+/// The reason for the rejection.
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;
@@ -270,7 +272,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
 
 /// Checks that an archive with these files holds the program.
 fn check_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
-    /// The greatest number of files that are named.
+    /// The maximum number of files that a message names.
     const NAMED: usize = 6;
     let Some(program) = program else { return Ok(()) };
     if files.contains(&fosssim_intake::top_folder(Path::new(""), files).join(program)) {

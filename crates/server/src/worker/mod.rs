@@ -1,5 +1,5 @@
-//! Workers: they fetch jobs from a [`JobSource`], let a [`Grader`] do them, and bring the results back. A worker knows
-//! neither courses nor students; what it holds is a lease.
+//! Workers fetch jobs from a [`JobSource`], pass them to a [`Grader`], and return the results. A worker has no data of
+//! courses and students, only leases.
 
 mod child;
 mod grader;

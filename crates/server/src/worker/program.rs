@@ -1,5 +1,5 @@
 //! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
-//! takes the worker down, and whatever the child leaves behind dies with the job.
+//! stops the worker, and all leftovers of the child are removed with the job.
 use super::{
     Grader, GraderFault, GradingOutput, NewFile, PROGRESS,
     child::{Child, End},
@@ -19,19 +19,19 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// The longest time that the grader may take to write its reports after it was told to stop.
+/// The maximum time for the grader to write its reports after it was stopped.
 pub(super) const GRACE: Duration = Duration::from_secs(20);
 
-/// The length of the grader's messages that is kept for the administrator.
+/// The maximum length of the grader's messages for the administrator.
 const MESSAGE: usize = 2000;
 
-/// The page that shows staff everything, whatever students may know.
+/// The name of the page for staff, which shows everything.
 pub const STAFF_PAGE: &str = "staff.html";
 
-/// The page that students see when hidden groups are published; only where there are any.
+/// The name of the page that students see after hidden groups are published; written only if there are any.
 pub const PUBLISHED_PAGE: &str = "published.html";
 
-/// The reports that a grading writes: format, file, media type. Two pages have no format of their own.
+/// The reports of a grading: format, file, media type. Two pages are written without a format.
 pub const REPORTS: [(&str, &str, &str); 5] = [
     ("json", "grade.json", "application/json"),
     ("text", "report.txt", "text/plain; charset=utf-8"),
@@ -40,7 +40,7 @@ pub const REPORTS: [(&str, &str, &str); 5] = [
     ("", PUBLISHED_PAGE, "text/html; charset=utf-8"),
 ];
 
-/// The program `fosssim-oracle`, or one that behaves like it.
+/// The program `fosssim-oracle`, or one with the same interface.
 #[derive(Debug, Clone)]
 pub struct Program {
     path: PathBuf,
@@ -48,12 +48,12 @@ pub struct Program {
 }
 
 impl Program {
-    /// Creates the grader at this path, with this many scenes of a job at one time.
+    /// Creates the grader from its path, with the number of scenes that run in parallel.
     pub fn new(path: PathBuf, threads: usize) -> Self {
         Self { path, threads }
     }
 
-    /// Returns the grader's SHA-256; nothing when it can't be read.
+    /// Returns the grader's SHA-256; empty if the file can't be read.
     async fn digest(&self) -> String {
         digest_of_file(&self.path).await.map_or_else(|_| String::new(), |grader| grader.digest.to_string())
     }
@@ -67,7 +67,7 @@ impl Program {
             Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
-            // The server could not ask the grader for its default, and lets it choose.
+            // The server could not read the grader's default, so the grader chooses.
             Suite::Named(name) if name.is_empty() => {}
             Suite::Named(name) => drop(command.arg("--suite").arg(name)),
             Suite::Archive(_) => drop(command.arg("--suite").arg(folder.join("suite/suite.toml"))),
@@ -78,14 +78,14 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // All reports show as much as students may know. Hidden groups are in all but the page: staff reads them, and
-        // the server hides them from students.
+        // Reports show as much as students may see. Hidden groups are in all of them except the page: staff reads them,
+        // and the server hides them from students.
         command.args(["--for", "student"]);
         for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         isolate(&mut command, folder);
-        // Another grader may not know these.
+        // Other graders may not have these options.
         command.env("FOSSSIM_PLATFORM_HIDES", "true");
         command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
         command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));
@@ -94,17 +94,17 @@ impl Program {
     }
 }
 
-/// The scene of a proof: a small one of the grader's own.
+/// The scene for a check, a small one of the grader.
 const PROOF: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
 
-/// The number of bytes that a folder must take for jobs to work in it.
+/// The number of bytes that must be writable in a folder for jobs.
 const ROOM: usize = 8 << 20;
 
-/// The longest time that a step of a proof may take.
+/// The maximum duration of a step of a check.
 const PROOF_TIME: Duration = Duration::from_secs(60);
 
 impl Program {
-    /// Runs the grader for a proof, and returns its exit code.
+    /// Runs the grader for a check, and returns its exit code.
     async fn step(&self, folder: &Path, arguments: &[&str], stop: &CancellationToken) -> Result<i32, String> {
         let messages = folder.join("messages.txt");
         let mut command = Command::new(&self.path);
@@ -130,7 +130,7 @@ impl Program {
         }
     }
 
-    /// Grades an example, and checks how that ends.
+    /// Grades an example, and checks the result.
     async fn try_example(
         &self,
         folder: &Path,
@@ -154,7 +154,7 @@ impl Program {
     }
 }
 
-/// Runs a command in a folder, without the server's environment, which may hold secrets.
+/// Runs a command in a folder, without the server's environment variables, which may contain secrets.
 pub(super) fn isolate(command: &mut Command, folder: &Path) {
     command.env_clear().current_dir(folder);
     for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
@@ -165,7 +165,7 @@ pub(super) fn isolate(command: &mut Command, folder: &Path) {
 }
 
 impl Grader for Program {
-    /// Proves that the grader works: there is room to work in; the reference's own trace of a scene is accepted; a
+    /// Checks that the grader works: there is space to work in, the reference's own trace of a scene is accepted, and a
     /// program that does nothing runs in the sandbox and is not accepted. A grader that records no traces, as in tests,
     /// is only started.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
@@ -200,13 +200,13 @@ impl Grader for Program {
                 place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
             }
             Form::Sources => unpack(submission, folder.join("submission")).await?.0,
-            // Their folder stays: it may be the group of all scenes.
+            // The top folder stays, because it may be the group of all scenes.
             Form::Traces => unpack(submission, folder.join("submission")).await?.1,
         };
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
         }
-        // The digest is taken before the grader runs: another one may be installed meanwhile.
+        // The digest is computed before the grader runs, because another one may be installed during the run.
         let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
@@ -215,7 +215,7 @@ impl Grader for Program {
         let (end, stopped) = end_of(&child, Duration::from_secs(task.seconds), &stop).await?;
         let said = || last_words(&messages);
         match end {
-            // 0 accepted, 1 not accepted, 130 stopped with partial results.
+            // The exit codes mean: 0 accepted, 1 not accepted, 130 stopped with partial results.
             End::Code(0 | 1) => {}
             End::Code(130) if stopped => {}
             End::Code(code) => {
@@ -240,7 +240,7 @@ impl Grader for Program {
     }
 }
 
-/// Returns how a grader ended, and whether its time was over.
+/// Returns the end of a grader, and whether it exceeded the time limit.
 async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
     let (mut left, mut is_late) = (most, false);
     loop {
@@ -267,8 +267,8 @@ fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
-/// Unpacks an archive into a new folder, and returns that folder and the folder at its top. The archive was checked
-/// when it arrived.
+/// Unpacks an archive into a new folder, and returns that folder and the folder at the archive's top. The archive was
+/// checked at the upload.
 async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), GraderFault> {
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
@@ -282,7 +282,7 @@ async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), G
     unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))
 }
 
-/// Returns the submission under its own name, executable: reports and messages speak of it so.
+/// Links the submission under its own name, as an executable, so that reports and messages contain that name.
 fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<PathBuf> {
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name must be a plain file name"));

@@ -1,4 +1,5 @@
-//! The source of workers on other machines: a server over HTTP. They hold a token, no password of a database.
+//! The source of jobs for workers on other machines: a server over HTTP. The workers have a token, but no access to the
+//! database.
 use super::{JobSource, SourceError};
 use crate::{
     queue::{Lease, Progress},
@@ -21,14 +22,14 @@ use ureq::{Agent, Body, RequestBuilder, http::Response};
 /// The time between two requests for a job.
 const ASK_EVERY: Duration = Duration::from_secs(1);
 
-/// The longest time that the server may take to answer, and to begin and go on with a file.
+/// The maximum time to wait for the server's answer, and for each part of a file.
 const PATIENCE: Duration = Duration::from_secs(60);
 const WHOLE_FILE: Duration = Duration::from_secs(900);
 
-/// The longest answer that is read.
+/// The maximum size of an answer, in bytes.
 const ANSWER: u64 = 1 << 20;
 
-/// A server over HTTP as a source. Cloning it is cheap.
+/// A server over HTTP, as a source of jobs. Clones are cheap.
 #[derive(Clone)]
 pub struct RemoteSource(Arc<Parts>);
 
@@ -37,7 +38,7 @@ struct Parts {
     server: String,
     authorization: String,
     name: String,
-    /// The time between two renewals of a lease in milliseconds, as the server sets it.
+    /// The time between two reports that the worker is alive in milliseconds, as the server sets it.
     tick_every: AtomicU64,
 }
 
@@ -48,12 +49,12 @@ impl fmt::Debug for RemoteSource {
 }
 
 impl RemoteSource {
-    /// Creates a source at a server's address, for a worker of this name.
+    /// Creates a source from a server's address, for a worker with a name.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
-            // The status is checked here, with the server's words about it.
+            // The status is checked here, with the server's message about it.
             .http_status_as_error(false)
-            // The token is sent to this server only.
+            // The token is sent only to this server.
             .max_redirects(0)
             .timeout_connect(Some(PATIENCE))
             .timeout_recv_response(Some(PATIENCE))
@@ -70,7 +71,7 @@ impl RemoteSource {
         }))
     }
 
-    /// Calls the server, away from the threads that must not wait.
+    /// Calls the server on a thread that may block.
     async fn call<T: Send + 'static>(
         &self,
         ask: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
@@ -89,7 +90,7 @@ impl RemoteSource {
     }
 }
 
-/// Returns a lease as a header shows it.
+/// Returns a lease in the form of the header.
 fn format_lease(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
@@ -103,7 +104,7 @@ impl Parts {
         format!("{}/api/v1/worker/{path}", self.server)
     }
 
-    /// Sends JSON, and reads JSON.
+    /// Sends a JSON body, and parses the JSON answer.
     fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, SourceError> {
         let answer = self.post(path, body)?;
         let mut answer = check_status(answer)?;
@@ -111,7 +112,7 @@ impl Parts {
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
-    /// Returns a request with the worker's identity and the job.
+    /// Returns a request with the worker's identity and the job's lease.
     fn sign<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
         let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
         match lease {
@@ -127,7 +128,8 @@ impl Parts {
     }
 }
 
-/// Returns the meaning of a status: a server that does not answer for a moment, or one that rejects for good.
+/// Returns the answer, or the error for its status: a server that does not answer at present, or one that rejects
+/// permanently.
 fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
@@ -136,7 +138,7 @@ fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceErro
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().unwrap_or_default();
     let problem: serde_json::Value = serde_json::from_slice(&body).unwrap_or_default();
     let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
-    // Our own mistakes, and missing things, are permanent; a proxy's troubles pass.
+    // Errors of this program, and missing things, are permanent; errors of a proxy are temporary.
     match status.as_u16() {
         401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(SourceError::Dismissed),
         400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Refused(text)),
@@ -190,7 +192,7 @@ impl JobSource for RemoteSource {
                 io::copy(&mut input, &mut output)
             });
             written.map(drop).map_err(|error| {
-                // Anybody who tries again wants to find nothing.
+                // A retry must find no file.
                 drop(fs::remove_file(&place));
                 no_answer(error)
             })

@@ -1,4 +1,4 @@
-//! A worker's slots: each does one job after another.
+//! The slots of a worker; each runs one job at a time.
 use super::{
     Grader, GraderFault, JobSource, PROGRESS, SourceError,
     health::{Health, job_folder},
@@ -19,27 +19,28 @@ use tokio_util::sync::CancellationToken;
 /// The time that a slot waits for a job before it requests one again.
 const PATIENCE: Duration = Duration::from_secs(20);
 
-/// The wait after the source did not answer; it doubles up to the longest.
+/// The wait after the source did not answer; it doubles up to the maximum.
 const FIRST_WAIT: Duration = Duration::from_millis(200);
 const LONGEST_WAIT: Duration = Duration::from_secs(5);
 
-/// The number of tries to get the parts of a job while the source does not answer.
+/// The maximum number of tries to fetch the files of a job while the source does not answer.
 const MOST_FETCHES: u32 = 5;
 
 /// The time between two reports of a grading's progress.
 const TELL_EVERY: Duration = Duration::from_secs(1);
 
-/// No suite has more scenes.
+/// A number of scenes that no suite exceeds.
 const MANY_SCENES: u32 = 1_000_000;
 
-/// The folder of a job in which its grader works.
+/// The name of a job's folder for the grader.
 const WORK: &str = "work";
 
-/// Does jobs, one in each slot, until `stop` is canceled; then gives back what it holds, and ends. Jobs get folders in
-/// this one, which its owner empties, not the slots.
+/// Runs jobs, one in each slot, until `stop` is canceled; then returns unfinished jobs, and ends. The folders of jobs
+/// are created in `folder`, which its owner empties, not the slots.
 ///
 /// # Errors
-/// When the source does not know the worker any more: what it holds counts for nothing.
+///
+/// When the source no longer accepts the worker, so that its jobs are lost.
 pub async fn work<D: JobSource, G: Grader>(
     source: D,
     grader: G,
@@ -85,7 +86,7 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
             }
             Ok(Some(job)) => {
                 wait = FIRST_WAIT;
-                // A panic is this job's, not the worker's.
+                // A panic affects only this job, not the worker.
                 let lease = job.lease.clone();
                 let done = tokio::spawn(run(source.clone(), health.clone(), job, stop.clone()));
                 if let Err(error) = done.await {
@@ -105,13 +106,13 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
     }
 }
 
-/// The way in which a job ended, for the source.
+/// The end of a job, for the source.
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
-    /// The worker is to stop.
+    /// The worker must stop.
     GivenBack,
-    /// The lease is lost: there is nothing to report.
+    /// The lease is lost, so there is nothing to report.
     Lost,
 }
 
@@ -144,7 +145,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
                     // The grader ends its children before anything is reported or removed.
                     halt.cancel();
                     match grading.await {
-                        // It was done at that very moment.
+                        // The job finished at that very moment.
                         JobEnding::Finished(outcome) if !lost.is_cancelled() => JobEnding::Finished(outcome),
                         _ if lost.is_cancelled() => JobEnding::Lost,
                         _ => JobEnding::GivenBack,
@@ -153,7 +154,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             }
         }
     };
-    // A failure of the grader may be the machine's fault; that costs the submission no try.
+    // A failure of the grader may be the machine's fault, which must not count as a failure of the job.
     let ending = match ending {
         JobEnding::Failed(fault) if !health.survives(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
@@ -165,7 +166,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
     keeping.abort();
 }
 
-/// Renews a lease until it is lost: as often as the source requests, and when the grading has advanced.
+/// Renews a lease until it is lost, at the interval that the source requests, and after progress of the grading.
 async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
     let mut renewed = tokio::time::Instant::now();
     let mut told = None;
@@ -183,13 +184,13 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
                 return lost.cancel();
             }
-            // The work continues: the source decides at its end whether it counts.
+            // The work continues; at its end, the source decides whether it counts.
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
         }
     }
 }
 
-/// Returns the progress of the grading that writes this file: `3/85`.
+/// Returns the progress in a grader's file, such as `3/85`.
 fn progress_in(file: &Path) -> Option<Progress> {
     let mut text = String::new();
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
@@ -204,7 +205,7 @@ impl From<SourceError> for GraderFault {
     }
 }
 
-/// Fetches what the job needs, grades, and stores the result.
+/// Fetches the files of the job, grades, and stores the result.
 async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
@@ -235,7 +236,8 @@ async fn attempt<D: JobSource, G: Grader>(
     Ok(Outcome { seconds, files, ..graded.outcome })
 }
 
-/// Repeats a request to a source that does not answer: a short fault of the network costs no try.
+/// Repeats a request to a source that does not answer, so that a short failure of the network does not count as a
+/// failure of the job.
 async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
     for _ in 0..MOST_FETCHES {
@@ -249,8 +251,8 @@ async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn()
     ask().await
 }
 
-/// Reports the result to the source, with as many tries as it takes: a lost result would have to be made again. A
-/// worker that must stop tries a few times only; then the lease runs out.
+/// Reports the result to the source, with any number of tries, because a lost result would have to be computed again. A
+/// worker that must stop tries only a few times; then the lease expires.
 async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;

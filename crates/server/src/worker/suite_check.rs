@@ -1,4 +1,4 @@
-//! Checks by the grader whether a suite can be used, before a submission is graded by it.
+//! The check whether a suite can be used, which the grader makes before a submission is graded by it.
 use super::{
     child::{Child, End, limit},
     program::isolate,
@@ -6,18 +6,19 @@ use super::{
 use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
-/// The longest time that the grader may take, in seconds on the clock and of the processor.
+/// The limit of wall time and processor time for the grader, in seconds.
 const SECONDS: u64 = 60;
 
-/// The memory that it may take for that.
+/// The limit of the grader's memory, in bytes.
 const MEMORY: u64 = 2 << 30;
 
-/// The length of its output that is shown.
+/// The maximum length of the shown output.
 const MESSAGE: usize = 2000;
 
-/// Checks the suite in a folder by the grader. A grader that knows no `suite check` has no objections.
+/// Checks the suite in a folder with the grader. A grader without the command `suite check` has no objections.
 ///
 /// # Errors
+///
 /// The grader's objections, without the folders of this machine.
 pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;

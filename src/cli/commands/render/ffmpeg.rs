@@ -1,8 +1,8 @@
-//! MP4 by a program: pictures go to ffmpeg through a pipe.
+//! MP4 films by an external program: pictures are sent to ffmpeg through a pipe.
 //!
-//! Its output is our own temporary file, so nothing appears under the target's name before it is whole. A program that
-//! takes no picture for a minute is ended. No name of a user is among its arguments but that file's, which begins with
-//! `file:`.
+//! Its output is a temporary file, so that nothing has the target's name before it is complete. A program that reads
+//! nothing for a minute is ended. None of its arguments contains a user's file name except for that file's, which
+//! begins with `file:`.
 use crate::{
     cli::output::Output,
     render::{Size, film::Rate},
@@ -20,10 +20,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The program.
+/// The name of the program.
 const FFMPEG: &str = "ffmpeg";
 
-/// Encoders that can be put into an MP4, the best first, with the arguments that each takes.
+/// The encoders for MP4, the best first, each with its arguments.
 const ENCODERS: [(&str, &[&str]); 4] = [
     ("libx264", &["-preset", "medium", "-crf", "20"]),
     ("libopenh264", &["-b:v", "4M"]),
@@ -34,7 +34,7 @@ const ENCODERS: [(&str, &[&str]); 4] = [
 /// The time after which a program that reads nothing is ended.
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// The number of bytes kept of its messages.
+/// The maximum number of bytes that are kept of the program's messages.
 const WORDS: usize = 4096;
 
 /// A film that is being encoded.
@@ -43,11 +43,11 @@ pub(super) struct Ffmpeg {
     pipe: Option<ChildStdin>,
     words: Option<JoinHandle<String>>,
     watch: Arc<EncoderWatch>,
-    /// The temporary name, until it appears under its own.
+    /// The temporary output, until it gets its final name.
     output: Option<Output>,
 }
 
-/// The state of the thread that watches.
+/// The state of the watching thread.
 #[derive(Default)]
 struct EncoderWatch {
     pictures: AtomicU64,
@@ -56,9 +56,10 @@ struct EncoderWatch {
 }
 
 impl Ffmpeg {
-    /// Returns whether there is an ffmpeg that can make an MP4, and by which encoder.
+    /// Returns an encoder of ffmpeg for MP4.
     ///
     /// # Errors
+    ///
     /// When there is none, with advice.
     pub(super) fn find() -> Result<(&'static str, &'static [&'static str])> {
         let run = Command::new(FFMPEG)
@@ -86,7 +87,8 @@ impl Ffmpeg {
     /// Starts the program.
     ///
     /// # Errors
-    /// When it can't be started, or the output is no file.
+    ///
+    /// When it can't be started, or the output is not a file.
     pub(super) fn start(size: Size, rate: Rate, output: Output) -> Result<Self> {
         let (encoder, options) = Self::find()?;
         let Some(path) = output.temporary_path() else { bail!("an MP4 is written into a file; name one") };
@@ -112,7 +114,7 @@ impl Ffmpeg {
             thread::spawn(move || {
                 let mut words = Vec::new();
                 let _ = errors.by_ref().take(WORDS as u64).read_to_end(&mut words);
-                // The rest is taken so that the program does not wait for a reader.
+                // The rest is read so that the program does not block.
                 let _ = io::copy(&mut errors, &mut io::sink());
                 String::from_utf8_lossy(&words).trim().to_owned()
             })
@@ -126,6 +128,7 @@ impl Ffmpeg {
     /// Writes a picture to the program.
     ///
     /// # Errors
+    ///
     /// When the program has ended.
     pub(super) fn write_picture(&mut self, rgba: &[u8]) -> Result<()> {
         let pipe = self.pipe.as_mut().context("ffmpeg takes no pictures")?;
@@ -134,15 +137,16 @@ impl Ffmpeg {
         Ok(())
     }
 
-    /// Waits for the film, which then appears under its name. `drawn` is the result of drawing.
+    /// Waits for the film, which then gets its final name. `drawn` is the result of drawing.
     ///
     /// # Errors
-    /// When drawing or the program failed, with the program's output; then nothing appears.
+    ///
+    /// When drawing or the program failed, with the program's output; then there is no film.
     pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
         drop(self.pipe.take());
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);
         let status = loop {
-            // The lock is given back while it is waited, for the thread that watches.
+            // The lock is released during the wait, for the watching thread.
             let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
             match asked.context("ffmpeg can't be waited for")? {
                 Some(status) => break status,
@@ -173,7 +177,7 @@ impl Drop for Ffmpeg {
     }
 }
 
-/// Starts a thread that ends the program when it is stuck, and that ends with it.
+/// Starts a thread that ends the program when it is stuck. The thread ends with the program.
 fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {

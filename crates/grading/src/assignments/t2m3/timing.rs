@@ -1,7 +1,8 @@
-//! The contest's timing scenes, of the size of the course's. They are made on demand: as files they would be megabytes.
+//! The contest's timing scenes, as large as the course's. They are generated on demand, because their files would have
+//! megabytes.
 use std::{fmt::Write, sync::OnceLock};
 
-/// A scene that is made.
+/// A generated scene.
 pub struct MadeScene {
     /// The scene's name, in the form of an embedded scene's.
     pub name: &'static str,
@@ -22,7 +23,7 @@ impl MadeScene {
     }
 }
 
-/// Whole numbers below 1000 that look random (a linear congruential generator).
+/// Pseudo-random whole numbers below 1000 (a linear congruential generator).
 struct DrawnNumbers(u32);
 
 impl DrawnNumbers {
@@ -32,7 +33,7 @@ impl DrawnNumbers {
     }
 }
 
-/// Returns a number of thousandths.
+/// Formats a number of thousandths as a decimal number.
 fn thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }
@@ -45,7 +46,7 @@ fn begin(description: &str, stiffness: u32) -> String {
     )
 }
 
-/// Adds a particle; places and velocities in thousandths.
+/// Adds a particle, whose position and velocity are in thousandths.
 fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
     let ([px, py], [vx, vy]) = (place.map(thousandths), velocity.map(thousandths));
     let (radius, fixed) = (thousandths(radius), u8::from(fixed));
@@ -55,7 +56,7 @@ fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32,
     );
 }
 
-/// Returns 15,000 balls in a box of four edges, each near its neighbors; a few of them go fast.
+/// Returns a scene of 15,000 balls in a box of four edges. Each ball is near its neighbors, and a few are fast.
 fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
     let mut drawn = DrawnNumbers(1);
@@ -75,7 +76,7 @@ fn box_of_balls() -> String {
     text + "</scene>\n"
 }
 
-/// Returns 120 ribbons of 40 particles on a half-plane, one above the other.
+/// Returns a scene of 120 ribbons of 40 particles on a half-plane, one above the other.
 fn pile_of_ribbons() -> String {
     let (ribbons, length) = (120, 40);
     let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);

@@ -1,4 +1,5 @@
-//! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
+//! The result of a submission's grading. It is short enough for a small terminal and comes last, so that it stays
+//! visible.
 use super::{Text, verdict_look};
 use crate::foreign::{one_line, plain};
 use crate::{
@@ -11,10 +12,10 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
-/// The number of groups that are listed where there are at least two more; those that are not accepted come first.
+/// The number of groups that are listed if there are at least two more, with groups that are not accepted first.
 const GROUPS: usize = 8;
 
-/// Renders the closing lines below the verdict. With `alone` there is nothing else above them.
+/// Renders the closing lines below the verdict. With `alone`, no scenes are above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
@@ -32,7 +33,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
-    // A fault of the submission itself explains everything.
+    // A fault of the whole submission explains everything.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
     let wrong = wrong_scenes(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
@@ -66,7 +67,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     text
 }
 
-/// Returns a row per group: points, and how many scenes are accepted.
+/// Returns a row per group, with the points and the number of accepted scenes.
 fn groups(options: &Text<'_>, grade: &Grade) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
     let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
@@ -95,7 +96,7 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
     text
 }
 
-/// Returns `all 12 scenes`, `8 of 12 scenes, 2 not run`.
+/// Returns the accepted share of a group, such as `all 12 scenes` or `8 of 12 scenes, 2 not run`.
 fn share(group: &GroupGrade) -> String {
     let all = group.scenes.len();
     let of = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();

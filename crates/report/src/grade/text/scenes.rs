@@ -1,5 +1,5 @@
-//! The scenes of a submission, group by group. Accepted scenes are counted. Scenes that fail for the same cause are
-//! described once.
+//! The scenes of a submission, group by group. Accepted scenes are only counted, and scenes that fail for the same
+//! cause are described once.
 use super::{super::phrases::list_some, Text, TextDetail, output, verdict_look};
 use crate::foreign::one_line;
 use crate::{
@@ -13,12 +13,12 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
-/// The greatest number of scenes named that end the same way.
+/// The maximum number of named scenes that end in the same way.
 const NAMED: usize = 3;
 
 /// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    // A fault of the submission itself is not repeated for each scene.
+    // A fault of the whole submission is not repeated for each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }
@@ -32,7 +32,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
 
 struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
-    /// Columns of the longest name.
+    /// The width of the longest name, in columns.
     width: usize,
     by_cause: Vec<AlikeScenes<'a>>,
 }
@@ -67,14 +67,14 @@ impl<'a> Scenes<'a, '_> {
         text
     }
 
-    /// Returns whether a scene is only counted: it is accepted, or another one with its cause is described.
+    /// Returns whether a scene is only counted, because it is accepted or another one with its cause is described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
             && (scene.verdict.is_accepted()
                 || self.alike_scenes(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
 
-    /// Returns the scenes with the cause of this one.
+    /// Returns the scenes with the same cause.
     fn alike_scenes(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
         let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|one| one.scene == scene.scene);
         self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)

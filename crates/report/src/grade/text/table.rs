@@ -1,4 +1,4 @@
-//! A class at a glance: one row per submission.
+//! The table of a class, with one row per submission.
 use crate::foreign::one_line;
 use crate::{
     grade::format_points,
@@ -7,14 +7,14 @@ use crate::{
 };
 use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 
-/// A column: its cells, the heading first, and their alignment.
+/// A column: its cells, beginning with the heading, and their alignment.
 struct TextColumn {
     cells: Vec<String>,
     right: bool,
 }
 
-/// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room
-/// for are left out: first the time, then the groups, in whose place all scenes are counted together.
+/// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that do not fit the width are
+/// left out: first the time, then the groups, which are replaced by the number of accepted scenes.
 #[must_use]
 pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
@@ -57,13 +57,13 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     rows(&chosen, grades, style)
 }
 
-/// The end of the course's names of groups, which headings do without.
+/// The last word of the course's group names, which headings leave out.
 const TESTS: &str = "Tests";
 
-/// The greatest width of a name, in columns; of a longer one its two ends are shown.
+/// The maximum width of a name, in columns; the middle of a longer name is left out.
 const NAME: usize = 40;
 
-/// Returns a name that widens no table.
+/// Returns a name, shortened to the width of the table's column.
 #[must_use]
 pub fn shorten_name(name: &str) -> String {
     const ENDS: usize = NAME / 2 - 2;
@@ -106,7 +106,7 @@ fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
             let blanks = " ".repeat(widest(column) - columns(cell));
             let look = match row.checked_sub(1) {
                 None => Some(Look::Faint),
-                // The verdict.
+                // The column of the verdict.
                 Some(grade) if number == 2 => Some(super::verdict_look(grades[grade].verdict)),
                 Some(_) => None,
             };
@@ -119,7 +119,7 @@ fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
     text
 }
 
-/// Returns `AC`, or the worst verdict and how many scenes are accepted.
+/// Returns `AC`, or the worst verdict and the number of accepted scenes.
 fn cell(group: &GroupGrade) -> String {
     let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
     if accepted == group.scenes.len() {

@@ -4,7 +4,7 @@ use fosssim_findings::PairWords;
 use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
 use fosssim_model::sim::PairKind;
 
-/// A fault of a search, with pairs of some kinds.
+/// A fault of a search, with the kinds of pairs that it affects.
 struct PairFault<'a> {
     kinds: Vec<&'a PairCounts>,
     times: usize,
@@ -12,7 +12,7 @@ struct PairFault<'a> {
     traits: Vec<PairTrait>,
 }
 
-/// Kinds with the same fault and the same traits are reported together.
+/// Returns the faults. Kinds with the same fault and the same traits are reported together.
 fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     let mut all: Vec<PairFault<'_>> = Vec::new();
     for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.kinds.iter().map(move |pairs| (times, pairs))) {
@@ -33,7 +33,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     all
 }
 
-/// Returns the pairs, what happens to them, and their common traits.
+/// Returns the affected pairs, the fault, and their common traits.
 pub(super) fn what(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
@@ -76,7 +76,7 @@ const fn happens(times: usize) -> &'static str {
     if times == 0 { "missing" } else { "reported twice" }
 }
 
-/// Returns the number of pairs of a kind that are reported this number of times.
+/// Returns how many pairs of a kind are reported `times` times, as a word.
 const fn share(pairs: &PairCounts, times: usize) -> &'static str {
     match pairs.times[1] {
         0 => "all",

@@ -3,7 +3,7 @@ use super::{capitalize, letters};
 use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
-/// Returns the fault of these polynomials.
+/// Returns the fault of wrong polynomials.
 pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
@@ -33,7 +33,7 @@ fn describe_guess(guess: &Guess) -> String {
     }
 }
 
-/// Returns the coefficient of a power, in a word.
+/// Returns the name of the coefficient of a power.
 const fn power_name(power: usize) -> &'static str {
     match power {
         0 => "constant",
@@ -82,7 +82,7 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
     }
 }
 
-/// Returns the meaning of a letter; nothing if its name explains it.
+/// Returns the meaning of a letter; `None` if its name explains it.
 fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
     letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }

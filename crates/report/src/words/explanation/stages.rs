@@ -7,12 +7,12 @@ use fosssim_mistakes::diagnose::{
 };
 use fosssim_model::sim::PairKind;
 
-/// Returns the fault of a stage, with its place in front.
+/// Returns the fault of a stage, beginning with its place.
 pub(super) fn what(fault: &StageFault) -> String {
     format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
 }
 
-/// Returns the parts of the assignment that may hold it, with the only kind of pair that it concerns, if there is one.
+/// Returns the parts of the assignment that may hold the fault, with the kind of pair if it concerns only one.
 fn describe_place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
@@ -82,7 +82,7 @@ fn describe_fault(fault: &StageFault) -> String {
     fixed.to_owned()
 }
 
-/// Returns the features of wrong changes of states.
+/// Returns the properties of wrong changes of states.
 fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right, but "),
@@ -115,7 +115,7 @@ fn describe_responses(wrong: &WrongResponses) -> String {
     }
 }
 
-/// Returns the subject that changes wrongly.
+/// Returns the objects that change wrongly.
 fn who_changes(all: &[ChangedQuantity]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));
@@ -151,7 +151,7 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Returns a line of the exact form; nothing if a number would add nothing.
+/// Returns a line of the exact form; `None` if a number would add nothing.
 pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
@@ -205,12 +205,12 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     })
 }
 
-/// Returns whether a measured ratio equals this one.
+/// Returns whether a measured ratio equals `value`.
 fn is(ratio: f64, value: f64) -> bool {
     (ratio - value).abs() < 1e-9
 }
 
-/// Ratios in words: "1.5 times" where they agree, else their range.
+/// Returns ratios as text: "1.5 times" if they agree, otherwise their range.
 pub(super) fn times(ratios: Ratios) -> String {
     let short = |value: f64| {
         if value.abs() >= 1e6 {

@@ -4,20 +4,20 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use std::{fs, path::Path};
 
-/// The form of backups.
+/// The version of the format of backups.
 pub(super) const SCHEMA: u32 = 1;
 
-/// The file's name; a folder without it is no backup.
+/// The name of the manifest's file, which every backup has.
 const FILE: &str = "backup.json";
 
 /// The contents of a backup.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Manifest {
-    /// The form of the backup.
+    /// The version of the backup's format.
     pub(super) schema: u32,
-    /// The program's version.
+    /// The version of the program that made the backup.
     pub(super) version: String,
-    /// The version of the tables.
+    /// The version of the database's tables.
     pub(super) tables: i64,
     pub(super) database: Copy,
     pub(super) artifacts: Artifacts,
@@ -32,7 +32,7 @@ pub(super) struct Copy {
     pub(super) bytes: u64,
 }
 
-/// The files of the store; each is called by its digest.
+/// The store's files; the name of each is its digest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Artifacts {
     pub(super) count: u64,
@@ -49,7 +49,8 @@ impl Manifest {
     /// Reads the manifest of a backup.
     ///
     /// # Errors
-    /// If the folder is no backup, or one of a newer program.
+    ///
+    /// If the folder is not a backup, or was made by a newer program.
     pub(super) fn read(folder: &Path) -> Result<Self> {
         let file = folder.join(FILE);
         let text = fs::read_to_string(&file)

@@ -1,5 +1,5 @@
-//! `restore`: a backup becomes a data folder again. The database comes last: a server that is started too early finds
-//! no database instead of half of one.
+//! The command `restore`, which turns a backup into a data folder. The database comes last, so that a server that is
+//! started too early finds no database instead of an incomplete one.
 use super::{
     super::{arguments::RestoreArguments, folders::ServiceFolders},
     manifest::{Artifacts, Manifest},
@@ -16,7 +16,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Restores a backup into an empty data folder and, if there is one, an empty database.
+/// Restores a backup into an empty data folder and, for PostgreSQL, an empty database.
 pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
@@ -38,7 +38,7 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     }
     let restored = fill(arguments, &manifest, &copy).await;
     if restored.is_err() {
-        // Half a data folder is of no use, and was empty before.
+        // The incomplete data folder is useless, and was empty before.
         drop(fs::remove_dir_all(&place.data));
     }
     restored
@@ -87,7 +87,7 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
     Ok(())
 }
 
-/// Copies the database to `file`, mode 600, by rename.
+/// Copies the database to `file` with mode 600, by renaming a temporary file.
 fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     let partial = PathBuf::from(format!("{}.partial", file.display()));
     fs::copy(copy, &partial).with_context(|| format!("cannot write {}", partial.display()))?;
@@ -96,7 +96,7 @@ fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     Ok(fs::rename(&partial, file)?)
 }
 
-/// Stores every file of a folder of artifacts. Each file's bytes must match its name.
+/// Stores all files of a folder of artifacts. Each file's bytes must match its name.
 async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut put = Artifacts::default();
     if !folder.exists() {

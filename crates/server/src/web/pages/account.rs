@@ -1,4 +1,4 @@
-//! One's courses and tokens.
+//! The pages with a person's courses and tokens.
 use super::{
     super::{
         api::TokenName,
@@ -15,7 +15,7 @@ use crate::{
 use askama::Template;
 use axum::response::Redirect;
 
-/// If there are more courses than this, an administrator sees the assignments of their own only.
+/// The number of courses above which an administrator sees only the assignments of their own.
 const FEW: usize = 5;
 
 #[derive(Template)]
@@ -24,7 +24,7 @@ struct Home {
     frame: PageFrame,
     name: String,
     courses: Vec<HomeCourse>,
-    /// Further courses of which an administrator is no member.
+    /// Further courses that an administrator is not a member of.
     others: Vec<Course>,
     /// Whether the server has the page that checks traces.
     checks_traces: bool,
@@ -33,7 +33,7 @@ struct Home {
 /// A course of the person.
 struct HomeCourse {
     member: Member,
-    /// The assignments to which something can be handed in.
+    /// The assignments that accept submissions.
     assignments: Vec<Row>,
     /// The number of the other assignments.
     rest: usize,
@@ -75,7 +75,7 @@ pub(super) async fn account(person: Person) -> Page {
     page(&person, None).await
 }
 
-/// Makes a token, whose secret is shown in the answer itself, and nowhere again.
+/// Creates a token, whose secret is shown only in this answer.
 pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -> Page {
     let token = person.new_token(form.name.trim()).await?.token;
     page(&person, Some(token)).await

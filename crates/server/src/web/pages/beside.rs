@@ -1,4 +1,4 @@
-//! Two submissions to an assignment side by side: the scenes in which they differ.
+//! The comparison of two submissions to an assignment: the scenes in which they differ.
 use super::{
     super::input::{AddressParts, QueryInput},
     Page, PageFrame, grades, show, text,
@@ -12,7 +12,7 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
-/// The other submission: its number on this server, or the login of a student, whose last submission is meant.
+/// The other submission: its number on this server, or the login of a student, for the student's last one.
 #[derive(Deserialize)]
 pub(super) struct OtherSubmission {
     #[serde(default)]
@@ -30,13 +30,13 @@ struct ComparisonPage {
     kinds: DifferingScenes,
 }
 
-/// The scenes that two results judge differently, by both verdicts in short.
+/// The scenes that two results judge differently, by the codes of both verdicts.
 type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
 
-/// The greatest number of scenes of a kind that are not folded.
+/// The maximum number of scenes of a kind that are not folded.
 const FEW: usize = 6;
 
-/// Returns the part of an address that leads to a scene in a report.
+/// Returns the fragment of an address that leads to a scene in a report.
 fn place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }

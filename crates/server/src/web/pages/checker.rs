@@ -1,4 +1,5 @@
-//! The page that checks traces in a browser. It is the grader's and holds no data of people: any visitor may read it.
+//! The page that checks traces in a browser. It is a part of the grader and contains no personal data, so any visitor
+//! may read it.
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::State,
@@ -6,7 +7,7 @@ use axum::{
     response::{Html, IntoResponse, Response},
 };
 
-/// Returns the page under the policy that it brings along: it may do less than other pages in all, but run its module.
+/// Returns the page with its own, stricter policy, which allows only its WebAssembly module.
 pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
     let page = app.checker.clone().ok_or_else(|| Problem::not_found("page that checks traces: the grader has none"))?;
     let policy = policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());

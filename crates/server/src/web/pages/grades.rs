@@ -1,4 +1,4 @@
-//! The class, and regrades.
+//! The pages of the class and of regrades.
 use super::{
     super::input::{AddressParts, Fields, ListStart, QueryInput},
     Page, PageFrame, scenes, see,
@@ -16,7 +16,7 @@ use axum::response::Redirect;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// The rows of scenes of the class page that `grade` writes.
+/// The rows of scenes, with the code of the page that `grade` writes.
 #[path = "../../../../report/src/page/heat.rs"]
 mod heat;
 
@@ -28,7 +28,7 @@ struct GradesPage {
     assignment: Assignment,
     standings: Vec<Standing>,
     look: Look,
-    /// The number of students that were found.
+    /// The number of students that match.
     found: usize,
     before: Option<String>,
     after: Option<String>,
@@ -36,12 +36,12 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
-    /// The kept texts of the results that count, by their numbers.
+    /// The stored texts of the results that count, by the results' numbers.
     kept: BTreeMap<i64, KeptResult>,
-    /// Scenes that students on the page have wrong, and these students.
+    /// The scenes that students on the page have wrong, and the students.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
-    /// Whether students see less than staff until it is published.
+    /// Whether students see less than staff before the publication.
     hides: bool,
 }
 
@@ -54,27 +54,27 @@ struct RegradePage {
     regrade: Regrade,
 }
 
-/// Students on one page.
+/// The maximum number of students on a page.
 const PAGE: usize = 100;
 
-/// The choice of students, their order, and the page.
+/// The filter of students, their order, and the page.
 #[derive(Deserialize)]
 pub(super) struct Look {
     #[serde(default)]
     q: String,
     #[serde(default)]
     sort: String,
-    /// The part of the class.
+    /// The selected part of the class.
     #[serde(default)]
     part: String,
-    /// A likely mistake.
+    /// A likely mistake, by which students are selected.
     #[serde(default)]
     mistake: String,
     page: Option<usize>,
 }
 
 impl Look {
-    /// Returns the students to show, their number on all pages, and the addresses of the pages before and after.
+    /// Returns the students on the page, their number on all pages, and the addresses of the pages before and after.
     fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
         let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
@@ -92,7 +92,7 @@ impl Look {
             "name" => standings.sort_by_cached_key(|one| one.name.to_lowercase()),
             "points" => standings.sort_by(|one, other| points(other).total_cmp(&points(one))),
             "submissions" => standings.sort_by_key(|one| std::cmp::Reverse(one.submissions)),
-            // They come by their logins.
+            // The students are sorted by their logins.
             _ => {}
         }
         let found = standings.len();
@@ -116,7 +116,7 @@ pub(super) struct NewRegrade {
     grading: Grading,
 }
 
-/// Returns the frame of the class, and of the pages below it.
+/// Returns the frame for the pages of the class.
 pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")

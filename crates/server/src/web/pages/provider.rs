@@ -1,4 +1,4 @@
-//! Signing in at an OpenID Connect provider.
+//! The pages for signing in at an OpenID Connect provider.
 use super::{
     super::{input::QueryInput, who::provider_cookie},
     see,
@@ -14,7 +14,7 @@ use axum::{
 };
 use serde::Deserialize;
 
-/// The provider's answer.
+/// The parameters of the provider's answer.
 #[derive(Deserialize)]
 pub(super) struct Answer {
     state: Option<String>,
@@ -23,8 +23,8 @@ pub(super) struct Answer {
     error_description: Option<String>,
 }
 
-/// Leads to the provider, with a cookie by which the browser is known when it comes back. What the provider makes a
-/// browser send is a page that it opens, so `Lax` will do.
+/// Redirects to the provider and sets a cookie that identifies the browser on return. The browser returns by opening a
+/// page, so `Lax` is sufficient.
 fn lead(app: &App, begun: &LoginAnswer) -> Response {
     let secure = if app.is_secure() { "; Secure" } else { "" };
     let (name, word) = (provider_cookie(app.is_secure()), &begun.browser);
@@ -32,7 +32,7 @@ fn lead(app: &App, begun: &LoginAnswer) -> Response {
     sign_in::with_cookie(&cookie, &begun.address)
 }
 
-/// Begins a sign-in. A provider that is away is told of on the page with the other ways in.
+/// Begins a sign-in. If the provider is unavailable, the sign-in page says so and offers the other ways.
 pub(super) async fn begin(
     visitor: Visitor,
     QueryInput(NextPage { to }): QueryInput<NextPage>,

@@ -1,4 +1,4 @@
-//! Permanent removal: forms that list what is removed, and require its name.
+//! The pages for permanent removal: forms that list the things to remove, and require a name as confirmation.
 use super::{
     super::input::{AddressParts, Fields},
     see,

@@ -1,15 +1,14 @@
-//! A report as a part of its submission's page. What a stranger's program printed is text in it; and should it ever be
-//! more, no script runs but this server's own, and nothing that could send something is taken in.
+//! A report as a part of its submission's page. Output of untrusted programs is escaped in it. Even if escaping failed,
+//! only this server's script could run, and elements that send or load something are rejected.
 use crate::{domain::Member, problem::Problem, task::OutputFile};
 
-/// The size of the largest report that is part of a page; a grader's have at most three megabytes.
+/// The maximum size of a report that is part of a page, in bytes; the grader's reports have at most three megabytes.
 const LARGEST: u64 = 4 << 20;
 
-/// Elements that no report has: by them a page sends something, or takes something in.
+/// The elements that a report never has, because they send or load something.
 const FOREIGN: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
 
-/// Returns a report without its head, which the page has; `None` for one of another version's grader, or a report that
-/// is too large.
+/// Returns a report without its head; `None` for one of another version's grader, or a report that is too large.
 pub(super) async fn read(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
     if file.artifact.size > LARGEST {
         return Ok(None);

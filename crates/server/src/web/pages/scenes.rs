@@ -1,11 +1,11 @@
-//! The scenes that submissions do not have right, in tables and sentences.
+//! The scenes that submissions have wrong, in tables and sentences.
 use crate::domain::{AttemptChange, KeptResult, Standing};
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// The greatest number of scenes that are named in a sentence.
+/// The maximum number of scenes that a sentence names.
 const NAMED: usize = 3;
 
-/// Returns the scenes that students have wrong by the results that count, and these students; the most frequent scenes
+/// Returns the scenes that students have wrong in the results that count, with the students; the most frequent scenes
 /// come first.
 pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -20,7 +20,7 @@ pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResu
     scenes
 }
 
-/// Returns the change that an attempt has made, in a sentence.
+/// Returns a sentence about the change in an attempt.
 pub(super) fn change(change: &AttemptChange) -> String {
     let list = |scenes: &[String]| {
         let more = scenes.len().saturating_sub(NAMED);

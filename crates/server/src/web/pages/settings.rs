@@ -1,4 +1,4 @@
-//! Settings of an assignment as a form.
+//! The settings of an assignment as a form.
 use super::{
     super::{
         api::{self, Revision},
@@ -15,7 +15,7 @@ use askama::Template;
 use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
 
-/// The beginning of the value of an uploaded suite in the list of suites; its digest follows.
+/// The prefix of an uploaded suite's value in the list of suites, followed by its digest.
 const UPLOADED: &str = "(uploaded)";
 
 const MIB: f64 = 1_048_576.0;
@@ -30,10 +30,10 @@ struct SettingsPage {
     megabytes: f64,
 }
 
-/// A suite in a form: value, words, and whether it is selected.
+/// A suite in a form: its value, its text, and whether it is selected.
 pub(super) type SuiteOption = (String, String, bool);
 
-/// Returns the suites to choose from: those that were uploaded to the course, and those that come with the grader.
+/// Returns the suites to choose from: those that were uploaded to the course, and the grader's.
 pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
     let mut suites = Vec::new();
     for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
@@ -57,7 +57,7 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
     Ok(suites)
 }
 
-/// The part of a form about grading.
+/// The part of the form about grading.
 #[derive(Deserialize)]
 pub(super) struct Grading {
     suite: String,
@@ -91,7 +91,7 @@ impl Grading {
     }
 }
 
-/// The part about handing in.
+/// The part of the form about submitting.
 #[derive(Deserialize)]
 pub(super) struct NewSettings {
     title: String,
@@ -123,7 +123,7 @@ impl NewSettings {
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
         Ok(Settings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
-            // At most a gigabyte, so that nothing is lost.
+            // The limit is a gigabyte, so the conversion is exact.
             max_bytes: (megabytes * MIB).round() as u64,
             attempts: parse("attempts", &self.attempts)?,
             per_hour: parse("submissions in an hour", &self.per_hour)?,
@@ -139,7 +139,7 @@ impl NewSettings {
     }
 }
 
-/// Returns the moment of a field with a date; the former moment if it is in the same minute.
+/// Returns the time of a date field; the earlier time if it is in the same minute.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);
@@ -165,10 +165,10 @@ pub(super) async fn set(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
-    // An assignment is made on the course's page: a typing error in an address makes none.
+    // New assignments are created on the course's page, so that a typing error in an address creates none.
     let assignment = staff.assignment(&assignment).await?;
     let (title, visible) = (Some(form.title.trim()), Some(form.visible.is_some()));
-    // A page of an earlier version has no revision, and may be any.
+    // A page of an earlier version has no revision, and is accepted.
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.over(before)).await?;

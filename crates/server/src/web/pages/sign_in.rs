@@ -1,4 +1,4 @@
-//! Signing in and out.
+//! The pages for signing in and out.
 use super::{
     super::{
         guard::{SESSION, session_cookie},
@@ -22,11 +22,11 @@ use url::form_urlencoded::byte_serialize;
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: PageFrame,
-    /// The provider's name, and where a sign-in there begins.
+    /// The provider's name, and the address at which a sign-in begins.
     provider: Option<(String, String)>,
-    /// The reason why the provider signs nobody in now.
+    /// The reason why the provider cannot be used at present.
     fault: String,
-    /// The page to go on to.
+    /// The path of the next page.
     to: String,
 }
 
@@ -51,20 +51,19 @@ pub(super) struct NextPage {
     pub(super) to: String,
 }
 
-/// Returns a page of this server; the first one where the words name none. Browsers take `//` and `/\` for another
-/// host.
+/// Returns a path on this server; the home page if the text is not one. Browsers read `//` and `/\` as another host.
 pub(super) fn local(to: &str) -> &str {
     let is_local =
         to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
     if is_local { to } else { "/" }
 }
 
-/// Returns a new session's cookie, and the way on.
+/// Returns an answer with a new session's cookie and a redirection.
 pub(super) fn enter(app: &App, session: &NewSecret, to: &str) -> Response {
     with_cookie(&session_cookie(app, session.reveal(), SESSION), to)
 }
 
-/// Returns the fault that another service names in its answer to a sign-in, as one short line.
+/// Returns the error in another service's answer to a sign-in, as one short line.
 pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
     let fault = words.into_iter().flatten().collect::<Vec<_>>().join(": ");
     let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
@@ -79,7 +78,7 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-/// Shows the ways in.
+/// Returns the page with the ways to sign in.
 pub(super) fn ways(visitor: &Visitor, to: String, fault: String) -> Page {
     let query = byte_serialize(to.as_bytes()).collect::<String>();
     let known = visitor.app.provider.as_ref();
@@ -96,7 +95,7 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
     Ok(enter(&visitor.app, &session, local(&form.to)))
 }
 
-/// Shows the page of a sign-in link. Opening the link does nothing yet: mail programs open links, too.
+/// Shows the page of a sign-in link. Opening the link does not sign in, because mail programs open links, too.
 pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
     show(&Welcome { frame: PageFrame::default(), is_good: visitor.is_link(&secret).await? })
 }
