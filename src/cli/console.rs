@@ -69,12 +69,12 @@ fn shows_signs() -> bool {
 }
 
 /// The minimum width for line breaks; a terminal that claims less does not know its size.
-const NARROWEST: u16 = 20;
+const MIN_WIDTH: u16 = 20;
 
 /// Returns the width of standard output's terminal in columns, if it is one.
 pub(super) fn width() -> Option<usize> {
     match terminal_size_of(io::stdout()) {
-        Some((Width(width), _)) if width >= NARROWEST => Some(width.into()),
+        Some((Width(width), _)) if width >= MIN_WIDTH => Some(width.into()),
         _ => None,
     }
 }
@@ -159,10 +159,10 @@ pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> Prog
 }
 
 /// The time that a command may take before a bar appears.
-const PATIENCE: Duration = Duration::from_secs(1);
+const BAR_DELAY: Duration = Duration::from_secs(1);
 
 /// The time between two movements of a bar.
-const TICK: Duration = Duration::from_millis(200);
+const BAR_INTERVAL: Duration = Duration::from_millis(200);
 
 /// A bar on standard error, if that is a terminal and the command takes longer than a second.
 pub(super) struct Bar {
@@ -182,7 +182,7 @@ impl Bar {
     pub(super) fn for_runs(runs: u64) -> Self {
         let bar = |runs| {
             let bar = add_bar(&show_bars(), runs, "{spinner} {elapsed}: run {pos} of {len}, {wide_msg}");
-            bar.enable_steady_tick(TICK);
+            bar.enable_steady_tick(BAR_INTERVAL);
             bar
         };
         Self { steps: runs, begun: None, shown: wants_bars().then(|| bar(runs)) }
@@ -198,7 +198,7 @@ impl Bar {
 
     /// Shows the number of finished steps.
     pub(super) fn show_step(&mut self, step: u32) {
-        if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
+        if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= BAR_DELAY) {
             self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
         }
         if let Some(bar) = &self.shown {

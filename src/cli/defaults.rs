@@ -8,7 +8,7 @@ use std::{fs, os::unix::fs::MetadataExt, path::Path};
 const FILE: &str = "fosssim.toml";
 
 /// The maximum size of the file, in bytes.
-const LARGEST: u64 = 1 << 16;
+const MAX_BYTES: u64 = 1 << 16;
 
 /// The contents of the file, with paths relative to its folder.
 #[derive(Debug, Deserialize)]
@@ -27,7 +27,7 @@ struct Defaults {
 /// When the file can't be read, or has an invalid content.
 pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
-        let text = match Place::new(folder, FILE).read(LARGEST) {
+        let text = match Place::new(folder, FILE).read(MAX_BYTES) {
             Ok(text) => text,
             Err(FileError::Missing { .. }) => continue,
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", folder.join(FILE).display())),
@@ -35,7 +35,7 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
         if !is_trusted(&folder.join(FILE)) {
             continue;
         }
-        let context = || format!("{}: suite, output, hints and jobs may be in it", folder.join(FILE).display());
+        let context = || format!("{}: it may contain suite, output, hints and jobs", folder.join(FILE).display());
         let read: Defaults = toml::from_str(&String::from_utf8_lossy(&text)).with_context(context)?;
         let below = |name: &String| {
             let path = if folder == working { name.into() } else { folder.join(name) };

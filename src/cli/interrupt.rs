@@ -16,7 +16,7 @@ use std::{
 };
 
 /// The maximum time without progress after the first signal.
-const PATIENCE: Duration = Duration::from_secs(5);
+const IDLE_LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the temporary files that an interrupt has to remove.
 pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
@@ -51,11 +51,11 @@ fn end() -> ! {
 }
 
 /// The number of signs of progress.
-static MOVES: AtomicU64 = AtomicU64::new(0);
+static ACTIVITY: AtomicU64 = AtomicU64::new(0);
 
 /// Records progress, so that the wait continues.
 pub(super) fn show_activity() {
-    MOVES.fetch_add(1, Ordering::Relaxed);
+    ACTIVITY.fetch_add(1, Ordering::Relaxed);
 }
 
 /// Returns a cancellation that SIGINT and SIGTERM trigger. A second signal ends the program immediately, and so does a
@@ -88,10 +88,10 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
 }
 
 fn end_when_nothing_moves() {
-    let (mut moves, mut since) = (MOVES.load(Ordering::Relaxed), Instant::now());
-    while since.elapsed() < PATIENCE {
+    let (mut moves, mut since) = (ACTIVITY.load(Ordering::Relaxed), Instant::now());
+    while since.elapsed() < IDLE_LIMIT {
         thread::sleep(Duration::from_millis(100));
-        let now = MOVES.load(Ordering::Relaxed);
+        let now = ACTIVITY.load(Ordering::Relaxed);
         if now != moves {
             (moves, since) = (now, Instant::now());
         }

@@ -13,7 +13,7 @@ use std::path::Path;
 const PNGS: &str = "pngs";
 
 /// The width and the height of the pictures, in pixels.
-const SIDE: u32 = 512;
+const PICTURE_SIDE: u32 = 512;
 
 /// The implementation of pictures by this program.
 pub(super) struct Program;
@@ -36,7 +36,7 @@ impl Services for Program {
             None => None,
             Some(folder) => Some(Folder::existing(folder).ok_or_else(|| NO_PICTURE_FOLDER.to_owned())?),
         };
-        let size = Size::new(SIDE, SIDE).map_err(|error| error.to_string())?;
+        let size = Size::new(PICTURE_SIDE, PICTURE_SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let painter = Painter::new(scene, &Extent::for_scene(scene, &start), PictureOptions { size, label: false });
         Ok(Box::new(PictureFolders { painter, raster: Raster::new(size), png, svg }))

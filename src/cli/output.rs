@@ -55,7 +55,7 @@ impl Output {
             Ok(existing) => {
                 let kind = existing.file_type();
                 if inputs.contains(&Identity::from_metadata(&existing)) {
-                    bail!("it is also an input; choose another name");
+                    bail!("it is also an input; choose another output");
                 } else if kind.is_dir() {
                     bail!("it is a directory; name a file inside");
                 } else if kind.is_char_device() {
@@ -85,7 +85,7 @@ impl Output {
         }
         let name = target.file_name().context("it names a directory; name a file inside")?;
         let begin = || files::Folder::to_write(folder)?.replacement(name, mode);
-        Ok(Self::File(begun(begin).with_context(|| format!("no file can be made in {}", folder.display()))?))
+        Ok(Self::File(begin_file(begin).with_context(|| format!("cannot create a file in {}", folder.display()))?))
     }
 
     /// Returns whether this is standard output, so that nothing else may be printed there.
@@ -124,7 +124,7 @@ impl Output {
         };
         self.finish_with(bytes)?;
         if let Some(file) = file {
-            say_where(&file, is_page);
+            print_path(&file, is_page);
         }
         Ok(())
     }
@@ -156,7 +156,7 @@ impl Output {
 }
 
 /// Prints the path of an output; a page is to be opened in a browser.
-pub(super) fn say_where(file: &Path, is_page: bool) {
+pub(super) fn print_path(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
     console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
 }
@@ -206,7 +206,7 @@ pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// When it can't be written; an old file is unchanged then.
 pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
-    find_replaced(|| place.replacement(), |file| file.write_all(bytes))
+    write_whole(|| place.replacement(), |file| file.write_all(bytes))
         .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
@@ -216,21 +216,21 @@ pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
 ///
 /// The errors of [`write_at`], and when the reader fails.
 pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
-    find_replaced(|| place.replacement(), |file| io::copy(from, file).map(drop))
+    write_whole(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
 
 /// Writes a whole file in one call, replacing an old one.
-fn find_replaced(
+fn write_whole(
     begin: impl FnOnce() -> io::Result<Replacement>,
     fill: impl FnOnce(&mut Replacement) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut file = begun(begin)?;
+    let mut file = begin_file(begin)?;
     fill(&mut file)?;
     finish_file(file)
 }
 
 /// Begins a file that an interrupt removes.
-fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
+fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
     show_activity();
     let mut pending = pending();
@@ -265,7 +265,7 @@ impl Folder {
             Ok(()) => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists && name.is_dir() => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                bail!("{} is not a folder; name one for the pictures", name.display())
+                bail!("{} is not a folder; choose one for the pictures", name.display())
             }
             Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
         }
@@ -294,7 +294,7 @@ impl Folder {
     ///
     /// When it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        find_replaced(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
+        write_whole(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
             .with_context(|| format!("cannot write {}", self.0.given_path().join(name).display()))
     }
 }

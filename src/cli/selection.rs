@@ -22,7 +22,7 @@ impl Selection {
             let bare = bare.strip_suffix(".xml").unwrap_or(bare);
             let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
             if !names.iter().any(|name| takes(&pattern, name)) {
-                bail!("{word} names no scene; there are {}", nearest_names(bare, names));
+                bail!("{word} matches no scene; there are {}", nearest_names(bare, names));
             }
             patterns.push(pattern);
         }
@@ -42,12 +42,12 @@ fn takes(pattern: &Pattern, name: &str) -> bool {
 }
 
 /// The number of names that are given as examples.
-const EXAMPLES: usize = 3;
+const MAX_EXAMPLES: usize = 3;
 
 /// Returns the names that are most similar to a typed one, as text.
 fn nearest_names(typed: &str, names: &[&str]) -> String {
-    let shown = near::nearest(typed, names.iter().copied(), EXAMPLES).join(", ");
-    if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }
+    let shown = near::nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
+    if names.len() > MAX_EXAMPLES { format!("{shown} and {} more", names.len() - MAX_EXAMPLES) } else { shown }
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use std::{
 };
 
 /// The environment variable that names a mistake.
-const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
+const MISTAKE_VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
 
 /// A copy or link named PREFIX plus a mistake's id makes that mistake.
 const NAME_PREFIX: &str = "fosssim-sample.";
@@ -24,11 +24,11 @@ const MOST: usize = Student::MOST;
 #[command(
     name = "fosssim-sample",
     version,
-    after_help = "The mistake may also be given by the environment variable FOSSSIM_SAMPLE_MISTAKE, or by a copy or \
-                  link of this program that is called fosssim-sample.ID. --mistake wins over the name, the name over \
-                  the variable. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake in any \
-                  case.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program \
-                  would never have ended here."
+    after_help = "The environment variable FOSSSIM_SAMPLE_MISTAKE can name the mistake, too, and so can a copy or \
+                  link of this program that is called fosssim-sample.ID. --mistake has precedence over the name, and \
+                  the name over the variable. `fosssim-oracle demo --program FILE` writes a copy that makes \
+                  its mistake in any case.\n\nExit status: 0 done, 1 failed, 2 wrong usage, 3 the course's program would never \
+                  have ended"
 )]
 pub struct Options {
     /// The scene, an XML file.
@@ -80,21 +80,21 @@ fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>)
         ("--mistake", ids)
     } else if let Some(ids) = mistake_of_name(program) {
         ("the program's name", ids)
-    } else if let Some(ids) = std::env::var(VARIABLE).ok().filter(|ids| !ids.is_empty()) {
-        (VARIABLE, ids)
+    } else if let Some(ids) = std::env::var(MISTAKE_VARIABLE).ok().filter(|ids| !ids.is_empty()) {
+        (MISTAKE_VARIABLE, ids)
     } else {
         return Ok(Student::default());
     };
-    let mistakes = ids.split(',').map(|id| mistake(source, id)).collect::<Result<Vec<_>, _>>()?;
+    let mistakes = ids.split(',').map(|id| parse_mistake(source, id)).collect::<Result<Vec<_>, _>>()?;
     if mistakes.len() > MOST {
-        return Err(format!("{source} asks for {} mistakes, but at most {MOST} can be made at once", mistakes.len()));
+        return Err(format!("{source} names {} mistakes, but a program can make at most {MOST}", mistakes.len()));
     }
     Ok(mistakes.into_iter().fold(Student::default(), |student, mistake| student.with_mistake(Some(mistake))))
 }
 
-fn mistake(source: &str, id: &str) -> Result<Mistake, String> {
-    let meant = || near::meant(id, all_rows().map(|row| row.id));
-    let unknown = || format!("{source} asks for the mistake '{id}', which --list does not have{}", meant());
+fn parse_mistake(source: &str, id: &str) -> Result<Mistake, String> {
+    let meant = || near::suggest(id, all_rows().map(|row| row.id));
+    let unknown = || format!("{source} names the mistake '{id}', which does not exist; --list shows all{}", meant());
     student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }
 

@@ -81,7 +81,7 @@ pub enum MidwayAct {
 }
 
 /// Runs the hostile action in the middle of the run, which is before step `steps / 2 + 1`.
-pub fn midway(student: Student) -> io::Result<MidwayAct> {
+pub fn act_midway(student: Student) -> io::Result<MidwayAct> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileExitMidway) => return Ok(MidwayAct::Leave(3)),
         Some(Mistake::HostileTruncated) => return Ok(MidwayAct::LeaveInsideRecord(0)),

@@ -32,7 +32,7 @@ pub fn print(json: bool) -> anyhow::Result<u8> {
         let listing = Listing { schema: "fosssim-sample/1", mistakes: all_rows().map(Entry::from).collect() };
         serde_json::to_string_pretty(&listing)? + "\n"
     } else {
-        table()
+        render_table()
     };
     match io::stdout().write_all(text.as_bytes()) {
         // A closed pipe is not an error.
@@ -41,7 +41,7 @@ pub fn print(json: bool) -> anyhow::Result<u8> {
     }
 }
 
-fn table() -> String {
+fn render_table() -> String {
     let mut text = String::new();
     for (kind, title) in [
         (RowKind::Wrong, "Mistakes: the result is wrong."),

@@ -8,15 +8,15 @@
 pub const RIGHT: &str = "right";
 
 /// The number of bytes for the id, or for several ids separated by commas; the rest is zero.
-const ROOM: usize = 256;
+const ID_BYTES: usize = 256;
 /// The bytes before the id, by which the place is found. They are stored backwards, so that they are in the right order
 /// only in the place itself.
 const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The number of bytes of the place.
-const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;
+const PLACE_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
 
 /// The place for the id in the program.
-type Place = [u8; LENGTH];
+type Place = [u8; PLACE_BYTES];
 
 static PINNED: Place = empty();
 
@@ -28,7 +28,7 @@ pub fn pinned_mistake() -> Option<&'static str> {
 
 /// Returns a place without a mistake.
 const fn empty() -> Place {
-    let mut place = [0; LENGTH];
+    let mut place = [0; PLACE_BYTES];
     let mut at = 0;
     while at < MARK_BACKWARDS.len() {
         place[at] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - at];
@@ -53,7 +53,7 @@ pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
     let (Some(at), None) = (found.next(), found.next()) else { return None };
     let mut copy = program.to_vec();
-    let room = copy.get_mut(at + mark.len()..at + LENGTH)?;
+    let room = copy.get_mut(at + mark.len()..at + PLACE_BYTES)?;
     // One byte stays zero, as the end of the id.
     if id.is_empty() || id.len() >= room.len() {
         return None;
@@ -72,12 +72,12 @@ mod tests {
         let program = |place: &Place| [b"before", &place[..], b"after"].concat();
         assert_eq!(read(&empty()), None);
         let pinned = write(&program(&empty()), "pe-square-no-eh").expect("a place");
-        let place: &Place = pinned[6..6 + LENGTH].try_into().expect("as long");
+        let place: &Place = pinned[6..6 + PLACE_BYTES].try_into().expect("as long");
         assert_eq!(read(place), Some("pe-square-no-eh"));
-        assert_eq!((&pinned[..6], &pinned[6 + LENGTH..]), (&b"before"[..], &b"after"[..]));
+        assert_eq!((&pinned[..6], &pinned[6 + PLACE_BYTES..]), (&b"before"[..], &b"after"[..]));
         // Another id may be written over it, also a shorter one.
         let again = write(&pinned, "short").expect("a place");
-        assert_eq!(read(again[6..6 + LENGTH].try_into().expect("as long")), Some("short"));
+        assert_eq!(read(again[6..6 + PLACE_BYTES].try_into().expect("as long")), Some("short"));
     }
 
     #[test]
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(write(b"no sample at all", "a"), None);
         assert_eq!(write(&[place, place].concat(), "a"), None);
         assert_eq!(write(&place, ""), None);
-        assert_eq!(write(&place, &"x".repeat(ROOM)), None);
-        assert_eq!(write(&place[..LENGTH - 1], "a"), None);
+        assert_eq!(write(&place, &"x".repeat(ID_BYTES)), None);
+        assert_eq!(write(&place[..PLACE_BYTES - 1], "a"), None);
     }
 }

@@ -315,7 +315,7 @@ unpacked.then(
   },
   (error) =>
     say(
-      `This browser can't run the checker: ${error.message}. Take Chrome 103, Firefox 113, Safari 16.4 or newer.`,
+      `This browser can't run the checker: ${error.message}. Use Chrome 103, Firefox 113, Safari 16.4 or newer.`,
       "bad",
     ),
 );

@@ -56,7 +56,7 @@ impl PairRequest {
 /// once more for a page that has the style of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.motion()?)
-        .map_err(|_| "there is no answer: the numbers are too large or too small, and the original hangs here")?;
+        .map_err(|_| "there is no answer: the numbers are too large or too small, and the original never ends")?;
     let report = Detect { study: &study, place: None };
     let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();
     let value = json!({ "decision": report.decision(general), "collides": study.answer.decision.collides() });

@@ -21,8 +21,8 @@ fosssim_num::closed_set! {
             "the original treats a polynomial below an absolute 1e-10 as zero, and its round-off elsewhere as wrong",
         /// Parity fails: the approach polynomial has the course's slip.
         ApproachForm =
-            "the original has the course's slip in t^3 of the approach polynomial of a particle and an edge, and \
-             the trace has the right form",
+            "the original has the course's slip in t^3 of the particle-edge approach polynomial, and the trace has \
+             the right form",
         /// Parity fails: states are compared at an absolute bound, whatever the size of the scene.
         AbsoluteStates = "the original compares states at an absolute 1e-10: the round-off of large numbers exceeds it",
         /// Parity fails: contact normals are compared at an absolute bound.
@@ -34,7 +34,7 @@ fosssim_num::closed_set! {
              with them",
         /// Parity fails: round-off may flip a decision.
         BorderlineDecision =
-            "the original knows one outcome of a decision that round-off may flip, and the trace has the other",
+            "the original accepts only one result of a decision that round-off may flip, and the trace has the other",
         /// Parity passes: the original never checks the first record.
         FirstRecord = "the original never checks the first record against the scene",
         /// Parity passes: the original copies the states of mid records without checking them.
@@ -45,14 +45,14 @@ fosssim_num::closed_set! {
         RepeatedCollision = "the original counts a collision that is logged several times as one",
         /// Parity passes: the original decides with its own polynomials, not with the trace's.
         OwnPolynomials =
-            "the original decides with its own polynomials, so it does not see what follows from the trace's",
+            "the original decides with its own polynomials, so it does not check the trace's decisions",
         /// Parity passes: the original does not check whether the course's library can have written a polynomial.
         ImpossibleLog = "the original does not check whether the course's library can have written the log",
         /// Parity passes: the original accepts values that are not numbers.
         NotANumber = "the original accepts values that are not numbers",
         /// Parity passes: the original accepts errors below an absolute bound, even if they are large relative to the
         /// value.
-        SmallErrors = "the original compares at absolute bounds: what is below them passes, however wrong for its size",
+        SmallErrors = "the original compares at absolute bounds: smaller errors pass, however large for the value",
         /// Parity passes: the original does not read the bytes after the last record.
         TrailingBytes = "the original does not check what follows the last record",
         /// Parity passes: the original skips damaged data.

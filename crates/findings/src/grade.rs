@@ -61,7 +61,7 @@ impl std::fmt::Display for CourseNote {
 
 /// The maximum number of submissions with the same program that a grade names, so that output for a class does not grow
 /// quadratically.
-const MOST_NAMED: usize = 20;
+const MAX_NAMED: usize = 20;
 
 /// The grade of one submission on one suite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -146,7 +146,7 @@ impl Grade {
         for grade in grades {
             let same = grade.program.as_ref().map(|program| owners[program].iter());
             let others = same.into_iter().flatten().filter(|other| **other != grade.submission);
-            grade.same_program = others.take(MOST_NAMED).cloned().collect();
+            grade.same_program = others.take(MAX_NAMED).cloned().collect();
         }
     }
 

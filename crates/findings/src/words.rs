@@ -34,10 +34,10 @@ impl Finding {
 
 /// The reason for a different decision, and the likely loss of coefficients. The trace's other polynomials show whether
 /// a factor explains it.
-const LACKING: &str = "the trace's polynomials lack coefficients for that";
+const MISSING_COEFFICIENTS: &str = "the trace's polynomials lack the coefficients for it";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
-const LEFT_OUT: &str = "are within reach of the penalty force, but no force was applied between them";
-const DOUBLED: &str = "are within reach of the penalty force, but the force between them was applied twice";
+const LEFT_OUT: &str = "are near enough for the penalty force, but no force was applied between them";
+const DOUBLED: &str = "are near enough for the penalty force, but the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
 impl Display for WithoutStep<'_> {
@@ -95,14 +95,14 @@ impl Display for WithoutStep<'_> {
             }
             FindingDetail::PassPositions { place } => write!(
                 f,
-                "{place}: follows from other positions than the response or the failsafe before it should give"
+                "{place}: follows from wrong positions, not from those after the preceding response or failsafe"
             ),
             FindingDetail::RecordsDiffer { part } => f.write_str(difference_of_records(part, is_first)),
             FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             FindingDetail::TrimmedDecision { place, collides } => {
                 let outcome = if collides { "collide" } else { "do not collide" };
                 let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
-                write!(f, "{pair} ({pass}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})")
+                write!(f, "{pair} ({pass}) {outcome}; {MISSING_COEFFICIENTS}, and decide otherwise ({DROPPING})")
             }
             FindingDetail::TrimmedTime { place, expected, actual } => write_trimmed_time(f, place, [expected, actual]),
             FindingDetail::BeyondReach { particle, position, velocity } => write!(
@@ -125,7 +125,7 @@ impl Display for WithoutStep<'_> {
 /// Writes the sentence about a time of impact that follows from lost coefficients, with the expected time first.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
     let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(ExactNumber));
-    write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
+    write!(f, "{pair} ({pass}) collide at time {expected}; {MISSING_COEFFICIENTS}, and have time {actual} ({DROPPING})")
 }
 
 /// Returns the sentence about a part in which a step's two records differ.
@@ -253,7 +253,7 @@ impl Display for WithoutResult {
                 f.write_str("a vortex force has no Hessian, which implicit integrators need")
             }
             StepError::Work { .. } => {
-                f.write_str("up to here, judging took many times the work of the scene's own run, which is the limit")
+                f.write_str("judging needed many times the work of the reference's run, and was stopped at this limit")
             }
         }
     }

@@ -10,10 +10,10 @@ use fosssim_model::scene::Scene;
 use std::io;
 
 /// The zstd level of cards. A higher level gains little, because most of a card is packed already.
-const LEVEL: i32 = 3;
+const COMPRESSION_LEVEL: i32 = 3;
 
 /// The maximum size of a card, in bytes; a larger file is not a card.
-const LARGEST: u64 = 64 << 20;
+const MAX_CARD_BYTES: u64 = 64 << 20;
 
 /// A judged trace that is still available.
 #[derive(Debug, Clone, Copy)]
@@ -97,7 +97,7 @@ pub fn store(folder: &Place, card: &str) -> io::Result<String> {
     let path = file(folder, &name);
     if !path.is_file() {
         // The file is renamed into place, because another job may draw the same card.
-        path.write(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
+        path.write(&zstd::encode_all(card.as_bytes(), COMPRESSION_LEVEL)?)?;
     }
     Ok(name)
 }
@@ -106,9 +106,9 @@ pub fn store(folder: &Place, card: &str) -> io::Result<String> {
 #[must_use]
 pub fn read(folder: &Place, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let (packed, _) = is_name.then(|| file(folder, name).file(LARGEST).ok()).flatten()?;
+    let (packed, _) = is_name.then(|| file(folder, name).file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
-    io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, LARGEST), &mut text).ok()?;
+    io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, MAX_CARD_BYTES), &mut text).ok()?;
     // A file that was changed since is ignored.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }

@@ -26,7 +26,7 @@ use std::{
 
 /// The maximum number of bytes that a report keeps of each output stream.
 #[cfg(target_os = "linux")]
-const KEPT_OUTPUT: usize = 4096;
+const MAX_OUTPUT_BYTES: usize = 4096;
 
 /// The end of a program, its measurements, and its output.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
             ..Measurements::default()
         };
         let kept = |stream: &fosssim_sandbox::CapturedOutput, name: &str| {
-            let mut text = beginning(&stream.bytes, KEPT_OUTPUT);
+            let mut text = truncate(&stream.bytes, MAX_OUTPUT_BYTES);
             if stream.truncated {
                 let mebibytes = stream.bytes.len() as f64 / f64::from(1 << 20);
                 text.push_str(&format!("\n[{name} was cut after {mebibytes} MiB]"));
@@ -103,14 +103,14 @@ impl<R: Read> Read for CountedReader<'_, R> {
 
 /// The depth of the search for explanations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
+pub enum SearchDepth {
     /// Only the first value that is not finite, which is quick.
     NotFinite,
     /// Likely mistakes, too.
     Mistakes,
 }
 
-impl Look {
+impl SearchDepth {
     /// Returns the explanations of a trace.
     #[must_use]
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
@@ -124,7 +124,7 @@ impl Look {
 /// Returns the result of one scene, with everything that any reader may see. `explain` finds the likely mistake. It is
 /// not called if no reader may see it, if the fair rules find no fault, or if the program's end is the worse fault.
 #[must_use]
-pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
+pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(run);
@@ -137,7 +137,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     };
     let differs = fair::cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
-    let look = if hints.explains() { Look::Mistakes } else { Look::NotFinite };
+    let look = if hints.explains() { SearchDepth::Mistakes } else { SearchDepth::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
     let mut result = SceneResult {
         scene: run.task.name.clone(),
@@ -220,7 +220,7 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
         (_, Ruling::WrongAnswer | Ruling::Undecided) => {
             (Verdict::WrongAnswer, Reason::Wrong(find_fault(judged, rules)))
         }
-        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(refusal(judged))),
+        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(fair_refusal(judged))),
     }
 }
 
@@ -240,7 +240,7 @@ fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
 }
 
 /// Returns the reason why the fair rules reject a trace that the original reads to its end.
-fn refusal(judged: &Outcome) -> BadTrace {
+fn fair_refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
         _ => BadTrace::Damaged,
@@ -249,7 +249,7 @@ fn refusal(judged: &Outcome) -> BadTrace {
 
 /// Returns the first bytes of the output as text; bytes that are not UTF-8 are replaced.
 #[cfg(target_os = "linux")]
-pub(super) fn beginning(printed: &[u8], most: usize) -> String {
+pub(super) fn truncate(printed: &[u8], most: usize) -> String {
     let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();
     if printed.len() > most {
         text.push_str("\n[cut short]");
@@ -277,9 +277,9 @@ mod tests {
         let limits = &RunLimits::default();
         for (hints, expected) in [
             (Hints::None, None),
-            (Hints::Where, Some(Look::NotFinite)),
-            (Hints::What, Some(Look::Mistakes)),
-            (Hints::Full, Some(Look::Mistakes)),
+            (Hints::Where, Some(SearchDepth::NotFinite)),
+            (Hints::What, Some(SearchDepth::Mistakes)),
+            (Hints::Full, Some(SearchDepth::Mistakes)),
         ] {
             let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
             let run = Run { task, program, judged, trace_bytes, rules, hints, limits };

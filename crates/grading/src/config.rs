@@ -19,7 +19,7 @@ use toml::Spanned;
 
 pub use super::{
     assignments::template,
-    shape::{Credit, MOST_POINTS},
+    shape::{Credit, POINTS_RANGE},
 };
 
 /// A validated suite; its scenes are patterns until they are found (see [`Plan`](super::plan::Plan)).
@@ -277,7 +277,7 @@ fn read_run(problems: &mut Vec<Problem>, run: Option<Spanned<Vec<String>>>) -> V
     let Some(run) = run else { return default_run() };
     for part in ["{program}", "{scene}", "{trace}"] {
         if !run.get_ref().iter().any(|word| word.contains(part)) {
-            problems.push((run.span(), format!("run has no {part}: the program would not get it")));
+            problems.push((run.span(), format!("run has no {part}, so the program would not get it; add it")));
         }
     }
     if run.get_ref().first().is_some_and(|word| word != "{program}") {
@@ -321,7 +321,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
     let span = build.span();
     let raw = build.into_inner();
     if raw.command.as_ref().is_some_and(Vec::is_empty) {
-        problems.push((span.clone(), "build.command is empty: say what builds the program".to_owned()));
+        problems.push((span.clone(), "build.command is empty: name the command that builds the program".to_owned()));
     }
     let leads_out = |program: &&String| {
         program.is_empty() || program.starts_with('/') || program.split('/').any(|part| part == "..")

@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, JudgedTrace},
-    conclude::{Look, ProgramRun, Run, conclude},
+    conclude::{ProgramRun, Run, SearchDepth, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, catch_panic},
@@ -35,7 +35,7 @@ const SCENE_FILE: &str = "scene.xml";
 const TRACE_FILE: &str = "trace.bin";
 
 /// The number of attempts before an error of the grader or the machine is reported.
-const ATTEMPTS: u32 = 2;
+const MAX_ATTEMPTS: u32 = 2;
 
 /// The way in which scenes are run.
 #[derive(Clone, Copy)]
@@ -81,7 +81,7 @@ impl Runner<'_> {
             }
             match self.attempt(program, task, on_step) {
                 Ok(result) => return result,
-                Err(_) if attempt < ATTEMPTS => attempt += 1,
+                Err(_) if attempt < MAX_ATTEMPTS => attempt += 1,
                 Err(words) => return task.failure_result(Failure::Machine(words)),
             }
         }
@@ -104,11 +104,11 @@ impl Runner<'_> {
             timings.add(RunPart::Program, outcome.cpu);
         }
         watch.end(RunPart::Start);
-        let (trace, trace_bytes) = self.trace_in(&left)?;
+        let (trace, trace_bytes) = self.open_trace(&left)?;
         // The trace is kept outside of judging, which may panic; it is saved for developers then.
         let mut kept = KeptTrace::new(LONGEST);
         let mut rulings = StepRulings::default();
-        let mut told = ToldSteps(on_step);
+        let mut told = StepReporter(on_step);
         let heard = &mut BothObservers(&mut rulings, &mut told);
         let judged = self.judge_trace(program, task, &mut kept, trace, heard);
         watch.end(RunPart::Judging);
@@ -155,12 +155,12 @@ impl Runner<'_> {
             };
             let drawn = catch_panic(|| cards.keep(&judged, self.student_hints));
             (result.card, result.card_for_students) = match drawn {
-                Ok(names) => names.map_err(|error| format!("a page's data can't be kept: {error}"))?,
+                Ok(names) => names.map_err(|error| format!("the data of a page can't be stored: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
         if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
-            place.write(kept.bytes()).map_err(|error| format!("its trace can't be kept: {error}"))?;
+            place.write(kept.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
         }
         watch.end(RunPart::Drawing);
         Ok(result)
@@ -181,14 +181,14 @@ impl Runner<'_> {
         let _registered = self.cancellation.register(running.canceller());
         let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
         let mut kept = Vec::new();
-        let (trace, _) = self.trace_in(&left)?;
+        let (trace, _) = self.open_trace(&left)?;
         trace.take(keep as u64).read_to_end(&mut kept).map_err(|error| format!("the trace can't be read: {error}"))?;
         Ok((kept, outcome))
     }
 
     /// Opens the trace that a program left, and returns its length: a regular file, read up to the limit. Any other
     /// entry counts as no trace.
-    fn trace_in(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
+    fn open_trace(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
         match left.regular_file(TRACE_FILE, u64::MAX) {
             Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),
             Err(CollectError::System { source, .. }) if source.kind() != io::ErrorKind::PermissionDenied => {
@@ -205,7 +205,7 @@ impl Runner<'_> {
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
     ) -> Result<(RunningProgram, TemporaryFolder), String> {
-        let folder = self.folders.take().map_err(|error| format!("no working folder for a run: {error}"))?;
+        let folder = self.folders.take().map_err(|error| format!("cannot make the run's folder: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
@@ -248,7 +248,7 @@ impl Runner<'_> {
         if !self.recorded {
             return Ok(replay::judge(&task.scene, kept.reader(trace), &options, watch));
         }
-        let no_recording = || format!("there is no recording of {}: judge it without --recorded", task.name);
+        let no_recording = || format!("{} has no recording: grade it without --recorded", task.name);
         let recording = zstd::Decoder::with_buffer(task.recording.ok_or_else(no_recording)?)
             .map_err(|error| format!("a recording can't be unpacked: {error}"))?;
         recorded::judge(&task.scene, kept.reader(trace), recording, watch).map_err(|error| error.to_string())
@@ -285,7 +285,7 @@ impl Runner<'_> {
 /// Returns the result of a judged run with its explanations, or the panic.
 fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
-    let explain = |look: Look| {
+    let explain = |look: SearchDepth| {
         catch_panic(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);
             Vec::new()
@@ -296,9 +296,9 @@ fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneR
 }
 
 /// Reports the progress of judging, step by step.
-struct ToldSteps<'a>(&'a mut dyn FnMut(u32));
+struct StepReporter<'a>(&'a mut dyn FnMut(u32));
 
-impl Progress for ToldSteps<'_> {
+impl Progress for StepReporter<'_> {
     fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
         (self.0)(step);
     }

@@ -21,7 +21,7 @@ pub struct Entry {
 
 /// Returns the line that stores a result under its key, with a line end; the submission's name is for people.
 #[must_use]
-pub fn line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
+pub fn format_line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
     let mut line = serde_json::to_vec(&Entry { form: VERSION, key, submission, result }).unwrap_or_default();
     line.push(b'\n');

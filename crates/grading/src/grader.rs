@@ -413,7 +413,7 @@ impl<'a> SubmissionGrading<'a> {
         let mut known = lock(&self.known);
         known.done[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
         if known.end.is_none_or(|(end, _)| scene < end) {
-            let end = patience::end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
+            let end = patience::find_end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
             known.end = end.or(known.end);
         }
     }

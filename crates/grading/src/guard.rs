@@ -28,15 +28,15 @@ thread_local! {
 ///
 /// When `work` panics.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
-    listen();
+    install_hook();
     let outer = GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     GUARDED.set(outer);
-    result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| message(&*payload))))
+    result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| panic_message(&*payload))))
 }
 
 /// Installs a panic hook that captures panics of guarded work, with their place, and forwards all others.
-fn listen() {
+fn install_hook() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let others = panic::take_hook();
@@ -45,13 +45,13 @@ fn listen() {
                 return others(panic);
             }
             let place = panic.location().map(|place| format!(" at {}:{}", place.file(), place.line()));
-            CAUGHT.set(Some(message(panic.payload()) + &place.unwrap_or_default()));
+            CAUGHT.set(Some(panic_message(panic.payload()) + &place.unwrap_or_default()));
         }));
     });
 }
 
 /// Returns the message of a panic, on one line.
-fn message(payload: &(dyn Any + Send)) -> String {
+fn panic_message(payload: &(dyn Any + Send)) -> String {
     let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned());
     words.map_or_else(|| "a panic without a message".to_owned(), |words| words.replace('\n', " "))

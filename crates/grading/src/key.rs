@@ -59,11 +59,11 @@ pub fn this_build() -> &'static str {
 fn build_id(file: &mut File) -> Option<Vec<u8>> {
     const NOTES: u32 = 4;
     const BUILD_ID: u32 = 3;
-    const LOOKED_AT: u64 = 1 << 14;
+    const SCANNED_BYTES: u64 = 1 << 14;
     const OWNER: &[u8] = b"GNU\0";
-    const LEAST: usize = 16;
+    const MIN_BUILD_ID_BYTES: usize = 16;
     let mut start = Vec::new();
-    file.take(LOOKED_AT).read_to_end(&mut start).ok()?;
+    file.take(SCANNED_BYTES).read_to_end(&mut start).ok()?;
     let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     let long =
         |bytes: &[u8], at: usize| usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok();
@@ -80,7 +80,7 @@ fn build_id(file: &mut File) -> Option<Vec<u8>> {
             let (owner, length) = (usize::try_from(owner).ok()?, usize::try_from(length).ok()?);
             let body = 12 + owner.next_multiple_of(4);
             let id = notes.get(body..body.checked_add(length)?)?;
-            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(OWNER) && length >= LEAST {
+            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(OWNER) && length >= MIN_BUILD_ID_BYTES {
                 return Some(id.to_vec());
             }
             notes = notes.get(body + length.next_multiple_of(4)..)?;

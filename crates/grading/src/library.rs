@@ -14,13 +14,13 @@ static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
 /// The example of a wrong trace: its scene, and the sample's output with the mistake `pe-linear-one-ab`.
-pub const FLAWED: (&str, &[u8]) = (
+pub const FLAWED_TRACE: (&str, &[u8]) = (
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/traces/flawed.bin")),
 );
 
 /// The assignment of generated scenes.
-const MADE_OF: Assignment = Assignment::T2M3;
+const GENERATED_ASSIGNMENT: Assignment = Assignment::T2M3;
 
 /// Returns the names of all embedded scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
@@ -40,7 +40,7 @@ pub fn scene(name: &str) -> Option<&'static [u8]> {
 
 /// Returns the generated scene with this name or full name.
 fn find_made(name: &str) -> Option<&'static MadeScene> {
-    let short = name.strip_prefix(MADE_OF.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
+    let short = name.strip_prefix(GENERATED_ASSIGNMENT.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
     TIMING.iter().find(|made| made.name == short)
 }
 
@@ -75,7 +75,7 @@ pub fn reference(path: &str) -> Option<&'static [u8]> {
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
     if find_made(name).is_some() {
-        return Some(MADE_OF);
+        return Some(GENERATED_ASSIGNMENT);
     }
     let path = file(&ASSETS, &format!("{name}.xml"))?.path();
     Assignment::from_key(path.components().next()?.as_os_str().to_str()?)
@@ -111,7 +111,7 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 
 /// Returns a file of an assignment, by its path within the assignment's folder or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    let of = |assignment: Assignment| find_below(inner(root, assignment.key())?, path);
+    let of = |assignment: Assignment| find_below(subfolder(root, assignment.key())?, path);
     Assignment::default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
 }
 
@@ -119,13 +119,13 @@ fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static
 /// entry.
 fn find_below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     match path.split_once('/') {
-        Some((first, rest)) => find_below(inner(folder, first)?, rest),
+        Some((first, rest)) => find_below(subfolder(folder, first)?, rest),
         None => folder.files().find(|file| is_called(file.path(), path)),
     }
 }
 
 /// Returns the subfolder `name`.
-fn inner(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
+fn subfolder(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
     folder.dirs().find(|inner| is_called(inner.path(), name))
 }
 

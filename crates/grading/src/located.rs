@@ -35,7 +35,7 @@ pub struct TriedScene<'a> {
 }
 
 /// The maximum probability that chance explains a reported result, over all tried values.
-const SIGNIFICANT: f64 = 0.01;
+const MAX_CHANCE: f64 = 0.01;
 
 impl ContentIndex {
     /// Returns all contents of a scene; empty if it can't be simulated to its end.
@@ -94,7 +94,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let by_chance = chance(failed.len(), with, tried.len()) * looked_at.len() as f64;
-    if by_chance >= SIGNIFICANT || 2 * failed.len() < with {
+    if by_chance >= MAX_CHANCE || 2 * failed.len() < with {
         return None;
     }
     contents.sort_by_key(|content| content.rank());

@@ -9,19 +9,19 @@ use fosssim_sandbox::RunEnd;
 use std::{path::Path, time::Duration};
 
 /// The limits of processor time and wall time for two steps of two bodies, which take a program some milliseconds.
-const LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+const TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
 /// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if no milestone
 /// fits, or if the program never writes a trace. The program is run six times, on two bodies that do not meet.
 ///
 /// # Errors An error of the grader or the machine, as text.
 pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
-    let [cpu, wall] = LIMITS;
+    let [cpu, wall] = TIME_LIMITS;
     let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
     let runner = Runner { limits: &limits, ..*runner };
     let mut is_traced = false;
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
-        let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;
+        let (trace, outcome) = runner.collect(program, &probe_task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
         // A program that crashes counts as accepting the scene.
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
@@ -51,7 +51,7 @@ pub fn lacks(found: Assignment, expected: Assignment) -> bool {
 }
 
 /// Creates a scene of two steps with the given integrator and collision element.
-fn task(integrator: Integrator, collision: &str) -> Result<SceneTask, String> {
+fn probe_task(integrator: Integrator, collision: &str) -> Result<SceneTask, String> {
     let xml = format!(
         "<scene><duration time=\"0.02\"/><integrator type=\"{}\" dt=\"0.01\"/>{collision}\
          <particle m=\"1\" px=\"0\" py=\"0\" vx=\"1\" vy=\"0\" fixed=\"0\" radius=\"0.1\"/>\

@@ -5,7 +5,7 @@ use unicode_normalization::UnicodeNormalization;
 use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 
 /// The maximum number of marks on one letter; further ones only cover the text around.
-const MARKS: usize = 4;
+const MAX_MARKS: usize = 4;
 
 /// Returns a file's name as text, in the usual form of letters with marks (NFC). Invisible or ambiguous characters
 /// become escapes: bytes that are not text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other
@@ -42,7 +42,7 @@ fn escape(text: &str, besides: impl Fn(char) -> bool) -> String {
     while let Some(c) = rest.next() {
         marks = if is_mark(c) { marks + 1 } else { 0 };
         let blank = c == ' ' && (matches!(before, None | Some(' ')) || rest.peek().is_none());
-        let stray = is_mark(c) && (before.is_none() || marks > MARKS);
+        let stray = is_mark(c) && (before.is_none() || marks > MAX_MARKS);
         match c {
             '\\' => shown.push_str("\\\\"),
             '\n' | '\r' | '\t' => shown.extend(c.escape_debug()),
@@ -178,6 +178,6 @@ mod tests {
     #[test]
     fn a_heap_of_marks_covers_nothing() {
         let heap = printable(OsStr::new(&format!("a{}", "\u{316}".repeat(100))));
-        assert_eq!(heap.chars().filter(|c| is_mark(*c)).count(), MARKS);
+        assert_eq!(heap.chars().filter(|c| is_mark(*c)).count(), MAX_MARKS);
     }
 }

@@ -4,11 +4,11 @@ pub use fosssim_model::scene::closest;
 use strsim::jaro_winkler;
 
 /// Returns the end of a message about an unknown word, which suggests a similar known word, if there is one.
-const LONGEST: usize = 60;
+const MAX_COMPARED_LETTERS: usize = 60;
 
 /// Returns the end of a message about an unknown word: a known word that was probably meant, if one is similar.
 #[must_use]
-pub fn meant<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> String {
+pub fn suggest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> String {
     closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
 }
 
@@ -27,7 +27,7 @@ pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize
 
 /// Returns the letters and digits of a word in lower case.
 fn to_plain(text: &str) -> String {
-    text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(LONGEST).collect()
+    text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(MAX_COMPARED_LETTERS).collect()
 }
 
 #[cfg(test)]

@@ -17,11 +17,11 @@ pub struct OneFile {
 
 /// The message about two submissions with one file whose owner is unknown. It contains no names, because students read
 /// it, too.
-pub(super) const SHARED: &str =
-    "the program is one file with another submission's (a hard link); the machine can't tell whose it is";
+pub(super) const SHARED_FILE: &str =
+    "the program is the same file as another submission's (a hard link), and its owner is unknown";
 
 /// The message about a program that is another submission's.
-pub(super) const OF_ANOTHER: &str = "it is another submission's file under a second name (a hard link)";
+pub(super) const FILE_OF_ANOTHER: &str = "it is a hard link to another submission's file";
 
 /// Returns whether an open file is another submission's, by the data from the search for submissions.
 pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {
@@ -31,7 +31,7 @@ pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bo
         Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
         // The owner was not searched, because the machine failed or somebody exchanged the file. That must not cost
         // points.
-        _ => Err(io::Error::other("the file was exchanged while submissions were graded; grade again")),
+        _ => Err(io::Error::other("the file was replaced while submissions were graded; grade again")),
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
 
 /// Returns the first scene that is skipped, with the reason. `known` has the verdict and the duration of every finished
 /// scene.
-pub(super) fn end(
+pub(super) fn find_end(
     patience: &Patience,
     fail_fast: bool,
     known: &[Option<(Verdict, Duration)>],
@@ -73,7 +73,7 @@ mod tests {
 
     #[test]
     fn scenes_in_a_row_that_run_into_a_limit_are_the_end() {
-        let end = |known: &[_]| end(&PATIENCE, false, known);
+        let end = |known: &[_]| find_end(&PATIENCE, false, known);
         let limits = |verdict| NotRunReason::Limits { scenes: 3, verdict };
         assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LARGE, LATE, LONG, FINE]), Some((3, limits(Verdict::TimeLimit))), "whichever they are");
@@ -87,23 +87,23 @@ mod tests {
         // A scene without a verdict yet is no link of the chain, and the end can only move forward.
         assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, limits(Verdict::TimeLimit))));
-        assert_eq!(super::end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
+        assert_eq!(super::find_end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
     }
 
     #[test]
     fn the_time_of_all_scenes_together_is_limited() {
-        assert_eq!(end(&PATIENCE, false, &[FINE; 5]), None);
-        assert_eq!(end(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
+        assert_eq!(find_end(&PATIENCE, false, &[FINE; 5]), None);
+        assert_eq!(find_end(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
         assert_eq!(
-            end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
+            find_end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
             Some((6, NotRunReason::Total(PATIENCE.total)))
         );
     }
 
     #[test]
     fn the_first_scene_that_is_not_accepted_is_the_end_when_asked_for() {
-        assert_eq!(end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, NotRunReason::FailFast)));
-        assert_eq!(end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
-        assert_eq!(end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
+        assert_eq!(find_end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, NotRunReason::FailFast)));
+        assert_eq!(find_end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
+        assert_eq!(find_end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
     }
 }

@@ -1,5 +1,5 @@
 //! A suite whose scenes have been found, as a grading runs them.
-pub use super::assignments::{default_name, meant, names as built_in_names};
+pub use super::assignments::{default_name, names as built_in_names, suggest};
 use super::{
     assignments,
     config::{self, Group, Hints, Marking, Pattern, Position, Suite, SuiteError},
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 #[cfg(target_os = "linux")]
 mod on_disk;
 #[cfg(target_os = "linux")]
-pub use on_disk::{FindError, LARGEST_SUITE, MOST_SCENE_BYTES, MOST_SCENES, find, load};
+pub use on_disk::{FindError, MAX_SCENE_BYTES, MAX_SCENES, MAX_SUITE_BYTES, find, load};
 
 /// A suite whose scenes have been found.
 pub type Plan = Suite<SceneTask>;

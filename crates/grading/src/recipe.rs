@@ -2,9 +2,9 @@
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
-    one_file::{OF_ANOTHER, OneFile, is_anothers},
+    one_file::{FILE_OF_ANOTHER, OneFile, is_anothers},
     result::UnusableReason,
-    staging::{CopyError, LARGEST_FOLDER, StagedProgram, at, build, copy_program, open_in, unreadable},
+    staging::{CopyError, MAX_FOLDER_BYTES, StagedProgram, at, build, classify_error, copy_program, open_in},
     temporary::TemporaryFolder,
     upload,
 };
@@ -48,7 +48,7 @@ impl Recipe<'_> {
             }
             Err(CollectError::NotRegular { .. }) => UnusableReason::CouldNotStart(StartProblem::NotAFile),
             Err(CollectError::Missing { .. }) => UnusableReason::CouldNotStart(StartProblem::NotFound),
-            Err(CollectError::System { source, .. }) => match unreadable(path, source) {
+            Err(CollectError::System { source, .. }) => match classify_error(path, source) {
                 CopyError::Submission(why) => UnusableReason::Unreadable(why),
                 CopyError::Ours(why) => return Err(why),
             },
@@ -67,7 +67,7 @@ impl Recipe<'_> {
         let path = folder.join(name);
         let why = match open_in(folder, name) {
             Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => {
-                UnusableReason::Unreadable(OF_ANOTHER.to_owned())
+                UnusableReason::Unreadable(FILE_OF_ANOTHER.to_owned())
             }
             Ok(file) => return self.stage_opened(file, &path),
             Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
@@ -75,7 +75,7 @@ impl Recipe<'_> {
                 None => upload::explain_missing_program(name, folder),
             },
             Err(CollectError::System { source, .. })
-                if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
+                if matches!(classify_error(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
             {
                 return Err(at(&path)(source));
             }
@@ -139,16 +139,16 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
 /// `is_alone` requires that the folder holds only the archive.
 fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
     /// The maximum number of entries of a learning platform's folder.
-    const MOST: usize = 100;
+    const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
     let mut names = opened.names().map_err(at(folder))?;
     names.retain(|name| !fosssim_intake::is_litter(name));
-    if names.len() > MOST || is_alone && names.len() > 1 {
+    if names.len() > MAX_PLATFORM_ENTRIES || is_alone && names.len() > 1 {
         return Ok(None);
     }
     let archive = |name: &OsString| {
         // A file with several names has no known owner.
-        let (mut file, _) = opened.regular_file(name.to_str()?, LARGEST_FOLDER).ok()?;
+        let (mut file, _) = opened.regular_file(name.to_str()?, MAX_FOLDER_BYTES).ok()?;
         matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };
     let mut archives = names.iter().filter_map(archive);

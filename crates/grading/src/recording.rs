@@ -12,7 +12,7 @@ use similar::TextDiff;
 use std::io::{self, Read};
 
 /// The compression level of zstd. It is high, because recordings are made rarely and shipped often.
-const COMPRESSION: i32 = 19;
+const COMPRESSION_LEVEL: i32 = 19;
 
 /// The reference trace of one scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -38,7 +38,7 @@ pub enum CannotRecord {
     #[error("the simulation stops: {0}")]
     Step(#[from] StepError),
     /// The trace could not be collected.
-    #[error("the trace could not be gathered: {0}")]
+    #[error("the trace could not be collected: {0}")]
     Io(#[from] io::Error),
 }
 
@@ -49,7 +49,7 @@ impl Recording {
     /// When the scene has errors, or a step has no result.
     pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
         let scene = scene::read(name, xml)?.scene;
-        let trace = trace(&scene)?;
+        let trace = simulate_trace(&scene)?;
         let digests = Digests::from_stream(&trace[..], Layout::for_scene(&scene));
         Ok(Self {
             name: name.to_owned(),
@@ -65,7 +65,7 @@ impl Recording {
     /// # Errors
     /// When zstd fails.
     pub fn pack(&self) -> io::Result<Vec<u8>> {
-        zstd::encode_all(&self.trace[..], COMPRESSION)
+        zstd::encode_all(&self.trace[..], COMPRESSION_LEVEL)
     }
 
     /// Returns the recording's line of the manifest.
@@ -82,7 +82,7 @@ impl Recording {
             Err(error) => text += &format!("{}: the recording can't be unpacked: {error}\n", self.name),
             Ok(recorded) if recorded != self.trace => {
                 let at = recorded.iter().zip(&self.trace).take_while(|(old, new)| old == new).count();
-                text += &format!("{}: the traces differ from byte {at} on\n", self.name);
+                text += &format!("{}: the traces differ, beginning at byte {at}\n", self.name);
             }
             Ok(_) => {}
         }
@@ -108,7 +108,7 @@ pub fn diff(name: &str, recorded: &str, now: &str) -> String {
 }
 
 /// Returns the trace of a scene.
-pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
+pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {

@@ -1,7 +1,7 @@
 //! Makes a grade from the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
 //! together.
 use super::{
-    config::{Credit, MOST_POINTS, Marking},
+    config::{Credit, Marking, POINTS_RANGE},
     grade::{Grade, GroupGrade, SceneGrade},
     library,
     plan::{Plan, PlannedGroup},
@@ -20,8 +20,8 @@ use std::time::Duration;
 /// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be
 /// accepted. Scenes on which the grader failed, or which it did not run, have no points; neither has their group.
 #[must_use]
-pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
-    let each = worth(marking.points, results.len());
+pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
+    let each = scene_points(marking.points, results.len());
     let all_accepted = results.iter().all(|(result, _)| result.verdict.is_accepted());
     let scenes: Vec<SceneGrade> = results
         .into_iter()
@@ -31,7 +31,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
             SceneGrade { result, points, max_points: each, cached, settled, agreed: 0 }
         })
         .collect();
-    let points = sum(marking.points, all_accepted, &scenes);
+    let points = group_points(marking.points, all_accepted, &scenes);
     let speed = marking.speed.map(|speed| SpeedGrade::from_scenes(speed, scenes.iter().map(|scene| &scene.result)));
     GroupGrade {
         name: name.to_owned(),
@@ -39,7 +39,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         hints: marking.hints,
         extra: marking.extra,
         all_or_nothing: marking.credit == Credit::All,
-        points: with_speed(points, speed.as_ref()),
+        points: add_speed_points(points, speed.as_ref()),
         max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
         speed,
         note: None,
@@ -55,7 +55,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     let of_group = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
         let results = results.by_ref().take(planned.scenes.len()).collect();
-        GroupGrade { note: planned.note.clone(), ..group(&planned.name, marking, results) }
+        GroupGrade { note: planned.note.clone(), ..grade_group(&planned.name, marking, results) }
     };
     let groups: Vec<GroupGrade> = plan.groups.iter().map(of_group).collect();
     let (verdict, points, max_points) = Grade::totals(&groups);
@@ -97,18 +97,18 @@ fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)>
 }
 
 /// Returns the points of the scenes and of their speed.
-fn with_speed(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
+fn add_speed_points(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
     speed.map_or(scenes, |speed| Some(scenes? + speed.points?))
 }
 
 /// Returns the points of one scene, in a group of `scenes` scenes.
 #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-fn worth(points: f64, scenes: usize) -> f64 {
+fn scene_points(points: f64, scenes: usize) -> f64 {
     if scenes == 0 { 0.0 } else { points / scenes as f64 }
 }
 
 /// Returns the points of a group. The full score is exact, because a sum of rounded shares could be 99.99999 of 100.
-fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
+fn group_points(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     match all_accepted && !scenes.is_empty() {
         true => Some(points),
         false => scenes.iter().map(|scene| scene.points).sum(),
@@ -133,11 +133,11 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
 /// Returns a contradiction in a grade, whose points or verdict do not follow from its scenes. A grade from another
 /// program is checked before its points are used.
 #[must_use]
-pub fn contradiction(grade: &Grade) -> Option<&'static str> {
+pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
-    if !grade.groups.iter().all(|group| MOST_POINTS.contains(&group.max_points)) || grade.max_points != max_points {
-        Some("the reachable points are not those of a suite")
-    } else if grade.points != points || !grade.groups.iter().all(follows) {
+    if !grade.groups.iter().all(|group| POINTS_RANGE.contains(&group.max_points)) || grade.max_points != max_points {
+        Some("the maximum points are not those of a suite")
+    } else if grade.points != points || !grade.groups.iter().all(is_consistent) {
         Some("the points do not follow from the verdicts")
     } else if grade.verdict != verdict {
         Some("the verdict is not the worst of the scenes' verdicts")
@@ -147,10 +147,10 @@ pub fn contradiction(grade: &Grade) -> Option<&'static str> {
 }
 
 /// Returns whether a group's points and verdict follow from its scenes' verdicts by some kind of credit.
-fn follows(group: &GroupGrade) -> bool {
+fn is_consistent(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
     let max_points = group.max_points_of_scenes();
-    let each = worth(max_points, group.scenes.len());
+    let each = scene_points(max_points, group.scenes.len());
     let has_its_share = |credit, scene: &SceneGrade| {
         scene.max_points == each && scene.points == share(credit, &scene.result, all_accepted).map(|share| each * share)
     };
@@ -159,12 +159,12 @@ fn follows(group: &GroupGrade) -> bool {
         && group.speed.as_ref().is_none_or(|speed| {
             *speed == SpeedGrade::from_scenes(speed.marking, group.scenes.iter().map(|scene| &scene.result))
         })
-        && group.points == with_speed(sum(max_points, all_accepted, &group.scenes), group.speed.as_ref())
+        && group.points == add_speed_points(group_points(max_points, all_accepted, &group.scenes), group.speed.as_ref())
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
 /// The number of accepted scenes that are checked for evidence against a likely mistake.
-const WITNESSES: usize = 12;
+const MAX_WITNESSES: usize = 12;
 
 /// Returns the likely mistakes that accepted scenes contradict; the smallest of these scenes are tried.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
@@ -181,7 +181,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .map(|(_, task)| &task.scene)
         .collect();
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
-    right.truncate(WITNESSES);
+    right.truncate(MAX_WITNESSES);
     // Bundled scenes are in their milestone's folder; the milestone of others follows from their contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
@@ -214,7 +214,7 @@ mod tests {
             extra: false,
             speed: None,
         };
-        group("g", marking, scenes).points.expect("points")
+        grade_group("g", marking, scenes).points.expect("points")
     }
 
     #[test]
@@ -238,9 +238,9 @@ mod tests {
             extra: false,
             speed: None,
         };
-        let graded = group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
+        let graded = grade_group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
         assert_eq!(graded.verdict, Verdict::RuntimeError);
-        let empty = group("g", marking, Vec::new());
+        let empty = grade_group("g", marking, Vec::new());
         assert_eq!((empty.points, empty.verdict), (Some(0.0), Verdict::NotRun));
     }
 
@@ -263,7 +263,7 @@ mod tests {
                     extra: false,
                     speed: None,
                 };
-                let graded = group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
+                let graded = grade_group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
                 assert_eq!((graded.points, graded.scenes[1].points), (None, None));
                 assert!(graded.scenes[0].points.is_some());
             }

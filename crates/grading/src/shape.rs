@@ -16,7 +16,7 @@ use toml::{
 pub(super) type Problem = (Range<usize>, String);
 
 /// The range of a group's points.
-pub const MOST_POINTS: Range<f64> = 0.0..1e6;
+pub const POINTS_RANGE: Range<f64> = 0.0..1e6;
 
 /// The rule for partial credit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -95,7 +95,7 @@ tables! {
     RawGroup GROUP {
         name: Spanned<String> = ValueKind::Text, true;
         scenes: Spanned<Vec<Spanned<String>>> = ValueKind::Texts, true;
-        points: f64 = ValueKind::Number("", MOST_POINTS), false;
+        points: f64 = ValueKind::Number("", POINTS_RANGE), false;
         extra: bool = ValueKind::Flag, false;
         credit: Credit = ValueKind::Choice(&["scenes", "steps", "all"]), false;
         visibility: Visibility = ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false;
@@ -108,10 +108,10 @@ tables! {
         key: Spanned<String> = ValueKind::Text, true;
         text: String = ValueKind::Text, false;
         link: Spanned<String> = ValueKind::Text, false;
-        points: f64 = ValueKind::Number("mistake.", MOST_POINTS), false;
+        points: f64 = ValueKind::Number("mistake.", POINTS_RANGE), false;
     }
     RawSpeed SPEED {
-        points: f64 = ValueKind::Number("speed.", MOST_POINTS), true;
+        points: f64 = ValueKind::Number("speed.", POINTS_RANGE), true;
         full_at: f64 = ValueKind::Number("speed.", 0.001..1e6), false;
         none_at: f64 = ValueKind::Number("speed.", 0.001..1e6), false;
         second: f64 = ValueKind::Number("speed.", 0.001..1e4), false;
@@ -149,7 +149,7 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
         errors.iter().map(|error| (error.span().unwrap_or(0..0), error.message().trim().replace('\n', " "))).collect();
     let is_readable = problems.is_empty();
     if is_readable {
-        clean(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
+        remove_unknown(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
         // The meaning of a broken line is unknown.
         table.get_mut().clear();
@@ -158,7 +158,7 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
 }
 
 /// Removes unknown keys and values of the wrong type from a table, and reports them.
-fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
+fn remove_unknown(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
     for Key(name, _, required) in keys {
         // A misspelled key is reported at its position.
         let meant = |key: &Spanned<Cow<'_, str>>| {
@@ -170,7 +170,7 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
     }
     let entries = std::mem::take(table).into_iter().filter_map(|(key, mut value)| {
         let fits = match keys.iter().find(|Key(name, ..)| key.get_ref() == name) {
-            Some(Key(name, kind, _)) => fits(name, kind, &mut value, problems),
+            Some(Key(name, kind, _)) => has_type(name, kind, &mut value, problems),
             None => {
                 problems.push((key.span(), describe_unknown(key.get_ref(), keys, place)));
                 false
@@ -182,17 +182,17 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
 }
 
 /// Returns whether a value is of the given type.
-fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
+fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
     let is = value.get_ref().type_str();
     let mut wrong = |wanted: &str| {
-        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", article(is))));
+        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", with_article(is))));
         false
     };
     match (kind, value.get_mut()) {
         (ValueKind::Text, DeValue::String(_)) | (ValueKind::Flag, DeValue::Boolean(_)) => true,
         (ValueKind::Number(table, range), given @ (DeValue::Float(_) | DeValue::Integer(_))) => {
-            let number = number(given).filter(|number| !range.contains(number));
+            let number = read_number(given).filter(|number| !range.contains(number));
             if let Some(number) = number {
                 let Range { start, end } = range;
                 problems.push((at, format!("{table}{name} is {number}: it must be between {start} and {end}")));
@@ -203,27 +203,27 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
         (ValueKind::Choice(words), DeValue::String(word)) => {
             let known = words.contains(&word.as_ref());
             if !known {
-                problems.push((at, not_among(name, word, words)));
+                problems.push((at, describe_choices(name, word, words)));
             }
             known
         }
         (ValueKind::Texts, DeValue::Array(list)) => {
             let before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
-                let is = article(item.get_ref().type_str());
+                let is = with_article(item.get_ref().type_str());
                 problems.push((item.span(), format!("each of {name} must be a text in quotes, not {is}")));
             }
             problems.len() == before
         }
         (ValueKind::Table(keys), DeValue::Table(table)) => {
-            clean(table, keys, &format!("[{name}]"), at, problems);
+            remove_unknown(table, keys, &format!("[{name}]"), at, problems);
             true
         }
         (ValueKind::Tables(keys), DeValue::Array(list)) if list.iter().all(|item| item.get_ref().is_table()) => {
             for item in list.iter_mut() {
                 let at = item.span();
                 if let DeValue::Table(table) = item.get_mut() {
-                    clean(table, keys, &format!("this [[{name}]]"), at, problems);
+                    remove_unknown(table, keys, &format!("this [[{name}]]"), at, problems);
                 }
             }
             true
@@ -240,7 +240,7 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
 }
 
 /// Returns a number's value, rounded if it is long; `None` for a hexadecimal number, which no reader accepts.
-fn number(value: &DeValue<'_>) -> Option<f64> {
+fn read_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
         DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
@@ -251,14 +251,14 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
 }
 
 /// Returns the type with its article, such as `an integer`.
-fn article(kind: &str) -> String {
+fn with_article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
 /// Returns the message for a word that is not in a list.
-fn not_among(name: &str, word: &str, words: &[&str]) -> String {
+fn describe_choices(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
-    format!("{name} \"{word}\" is not known: there are {}{}", list_words(words, "and"), hint.unwrap_or_default())
+    format!("{name} \"{word}\" is unknown; choose {}{}", list_words(words, "and"), hint.unwrap_or_default())
 }
 
 /// Returns a list as text, such as `"a", "b" and "c"`.

@@ -23,26 +23,26 @@ use std::{
 };
 
 /// The maximum number of scenes that are tried for one cause, the smallest first.
-const MOST_SCENES: usize = 4;
+const MAX_SCENES: usize = 4;
 /// The maximum number of bodies of a scene that is reduced; traces of larger scenes are too long to be kept whole.
-pub const MOST_BODIES: usize = 400;
+pub const MAX_BODIES: usize = 400;
 /// The maximum number of causes without a name for which a scene is made.
-const MOST_UNNAMED: usize = 2;
+const MAX_UNNAMED_CAUSES: usize = 2;
 
 /// The limits for smallest scenes at the end of a report.
-pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
+pub const QUICK_LIMITS: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2) };
 
 /// The minimum time for a cause without a name; a quarter of the limit if that is more.
-const UNNAMED: Duration = Duration::from_secs(5);
+const UNNAMED_CAUSE_TIME: Duration = Duration::from_secs(5);
 
 /// The limits of processor time and wall time of a run.
-const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+const RUN_TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
 /// Returns limits with no more time than a program needs on a small scene. A trace that is complete at the time limit
 /// is still read.
 #[must_use]
 pub fn impatient(limits: &RunLimits) -> RunLimits {
-    RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
+    RunLimits { cpu: limits.cpu.min(RUN_TIME_LIMITS[0]), wall: limits.wall.min(RUN_TIME_LIMITS[1]), ..*limits }
 }
 
 /// A function that describes a smallest scene, with the hints for its students.
@@ -123,7 +123,7 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Wrong
     for end in ends {
         take(Some(WrongReason::Ended(end.clone())), &|wrong| wrong.ended == end);
     }
-    all.extend(left.iter().take(MOST_UNNAMED).map(|one| WrongScenes { reason: None, scenes: vec![one.task] }));
+    all.extend(left.iter().take(MAX_UNNAMED_CAUSES).map(|one| WrongScenes { reason: None, scenes: vec![one.task] }));
     all
 }
 
@@ -147,13 +147,13 @@ impl Shrinker<'_> {
     /// # Errors An error of the grader or the machine, as text.
     pub fn smallest(&self, cause: &WrongScenes<'_>) -> Result<Option<ShrunkScene>, String> {
         let mut tasks = cause.scenes.clone();
-        tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
+        tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let spent = Cell::new(Duration::ZERO);
         // Only this thread's time counts, because other threads may grade.
         let begun = processor_time(TimeOf::Thread);
         let time = || spent.get() + processor_time(TimeOf::Thread).saturating_sub(begun);
-        for task in tasks.into_iter().take(MOST_SCENES) {
+        for task in tasks.into_iter().take(MAX_SCENES) {
             if time() >= self.limits.time || self.runner.cancellation.is_cancelled() {
                 break;
             }
@@ -164,7 +164,7 @@ impl Shrinker<'_> {
             let steps = self.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
             let begin = beginnings(&task.scene, &seen.trace, &steps);
             let all = self.limits.time;
-            let limit = if reason.is_unnamed() { all.min(UNNAMED.max(all / 4)) } else { all };
+            let limit = if reason.is_unnamed() { all.min(UNNAMED_CAUSE_TIME.max(all / 4)) } else { all };
             let is_over = || time() >= limit || self.runner.cancellation.is_cancelled();
             // In the best case, the scene distinguishes the mistake from all others.
             let search = |leads| self.reduce((&reason, leads), begin.clone(), &spent, &is_over);

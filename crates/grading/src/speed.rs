@@ -62,7 +62,7 @@ impl SubmissionGrading<'_> {
     fn time_scene(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
         let (staged, reference) = (self.staged_program(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
-        let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };
+        let mut timing = Timing { machine: machine_name(), runs: Vec::new(), failed: None };
         let run = |program: &StagedProgram, words: &[String]| {
             let runner = Runner {
                 run: words,
@@ -105,11 +105,11 @@ impl SubmissionGrading<'_> {
 
 /// Returns whether the times were measured on this machine, with enough runs.
 fn is_of_here(timing: &Timing, marking: SpeedMarking) -> bool {
-    timing.machine == machine() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
+    timing.machine == machine_name() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
 }
 
 /// Returns the names of this machine and its processor.
-fn machine() -> String {
+fn machine_name() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let processor = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = processor.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or_default();

@@ -7,7 +7,7 @@
 //! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
-    conclude::beginning,
+    conclude::truncate,
     config::BuildStep,
     grade::Build,
     one_file::{OneFile, is_anothers},
@@ -29,15 +29,15 @@ use std::{
 };
 
 /// The maximum size of a submission's folder, in bytes.
-pub(super) const LARGEST_FOLDER: u64 = 1 << 30;
-const MOST_FILES: u64 = 20_000;
+pub(super) const MAX_FOLDER_BYTES: u64 = 1 << 30;
+const MAX_FILES: u64 = 20_000;
 /// The maximum size of a build's folder, including sources, in bytes.
-const LARGEST_BUILD: u64 = 2 << 30;
-const DEEPEST: u32 = 64;
+const MAX_BUILD_BYTES: u64 = 2 << 30;
+const MAX_DEPTH: u32 = 64;
 /// The maximum number of bytes of compiler output that a report keeps.
-const KEPT_OUTPUT: usize = 64 << 10;
+const MAX_OUTPUT_BYTES: usize = 64 << 10;
 /// The size of a copied block, in bytes.
-const AT_ONE_GO: usize = 1 << 16;
+const BLOCK_BYTES: usize = 1 << 16;
 
 /// A program to run, with its digest. Dropping the value removes the copy.
 #[derive(Debug)]
@@ -77,7 +77,7 @@ impl From<String> for CopyError {
 
 /// Returns the kind of an error when a part of a submission is opened or read: inaccessible or vanished files are the
 /// submission's own fault.
-pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
+pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
     // The length of a path is the submission's choice, and a failing disk is the machine's fault.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
@@ -94,7 +94,7 @@ pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
 /// When the program can't be read or copied.
 pub fn reference(path: &Path) -> Result<StagedProgram, String> {
     let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
-    copied_as(OsStr::new("FOSSSimOracle"), file, path, &mut { LARGEST_FOLDER }).map_err(|error| match error {
+    copy_as(OsStr::new("FOSSSimOracle"), file, path, &mut { MAX_FOLDER_BYTES }).map_err(|error| match error {
         CopyError::Submission(why) => at(path)(io::Error::other(why)),
         CopyError::Ours(why) => why,
     })
@@ -102,14 +102,14 @@ pub fn reference(path: &Path) -> Result<StagedProgram, String> {
 
 pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     let opened = OpenFolder::open(folder).map_err(|source| CollectError::System { name: name.to_owned(), source })?;
-    opened.file(OsStr::new(name), LARGEST_FOLDER).map(|(file, _)| file)
+    opened.file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
 }
 
 /// Returns the digest of a file without copying it; `None` for files that [`Recipe::file`] rejects, and for links.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
-    if length <= LARGEST_FOLDER { digest_of(file) } else { None }
+    if length <= MAX_FOLDER_BYTES { digest_of(file) } else { None }
 }
 
 /// Returns the digest of the file that [`Recipe::file_in`] would stage, without copying it.
@@ -121,7 +121,7 @@ pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<b
 
 fn digest_of(file: File) -> Option<blake3::Hash> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok().then(|| hasher.finalize())
+    hasher.update_reader(file.take(MAX_FOLDER_BYTES)).is_ok().then(|| hasher.finalize())
 }
 
 impl StagedProgram {
@@ -145,13 +145,13 @@ impl StagedProgram {
 /// Copies an open program, unless it is the grader or cannot be started.
 pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(at(path))?;
-    let mut room = LARGEST_FOLDER;
+    let mut room = MAX_FOLDER_BYTES;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
     // A changed copy of the grader with this name would also write right traces.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
-    let why = match copied_as(name, file, path, &mut room) {
+    let why = match copy_as(name, file, path, &mut room) {
         Ok(staged)
-            if !is_oracle && !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
+            if !is_oracle && !is_own(MAX_FOLDER_BYTES - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
         {
             match backend.start_problem(&staged.program) {
                 None => return Ok(staged),
@@ -166,7 +166,7 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
 }
 
 /// Copies an open program into a new folder, under the name `name`.
-fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
+fn copy_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
     let folder = TemporaryFolder::make("program").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
     // A program is executable, even if the upload lost the permission.
@@ -201,7 +201,7 @@ pub(super) fn build(
         None if command.contains('/') => return Ok(failed(BuildEnd::NoScript(command.to_owned()), String::new())),
         None => {
             return Err(format!(
-                "build command {command} is not on this machine; install it, or change [build] in the suite"
+                "build command {command} is not installed on this machine; install it, or change [build] in the suite"
             ));
         }
     };
@@ -210,7 +210,7 @@ pub(super) fn build(
         wall: step.wall,
         memory: step.memory,
         output_bytes: 4 << 20,
-        folder_bytes: LARGEST_BUILD,
+        folder_bytes: MAX_BUILD_BYTES,
         folder_files: 100_000,
         processes: 128,
         open_files: 1024,
@@ -225,12 +225,12 @@ pub(super) fn build(
     let _registered = cancellation.register(running.canceller());
     let (outcome, made) = running.wait_with_folder().map_err(|error| error.to_string())?;
     let printed = [&outcome.stdout.bytes[..], &outcome.stderr.bytes].concat();
-    let output = beginning(&printed, KEPT_OUTPUT);
+    let output = truncate(&printed, MAX_OUTPUT_BYTES);
     if outcome.ended != RunEnd::Exited(0) {
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
     // The build may have left a link in the program's place.
-    match made.regular_file(&step.program, LARGEST_FOLDER) {
+    match made.regular_file(&step.program, MAX_FOLDER_BYTES) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
             Ok(StagedProgram { build, ..copy_program(file, &copy.join(&step.program), backend)? })
@@ -249,22 +249,22 @@ fn copy_file(
     room: &mut u64,
     is_program: bool,
 ) -> Result<blake3::Hash, CopyError> {
-    const ANYBODY_EXECUTES: u32 = 0o111;
+    const EXECUTE_BITS: u32 = 0o111;
     let mode = source.metadata().map_err(at(from))?.permissions().mode();
-    let mut executable = is_program || mode & ANYBODY_EXECUTES != 0;
+    let mut executable = is_program || mode & EXECUTE_BITS != 0;
     let mut target = File::options().write(true).create_new(true).mode(0o600).open(to).map_err(at(to))?;
     let mut hasher = blake3::Hasher::new();
-    let mut buffer = vec![0; AT_ONE_GO];
+    let mut buffer = vec![0; BLOCK_BYTES];
     let mut length = 0;
     loop {
         let read = match source.read(&mut buffer) {
             Ok(0) => break,
             Ok(read) => &buffer[..read],
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(unreadable(from, error)),
+            Err(error) => return Err(classify_error(from, error)),
         };
         // The file may have grown after its length was read.
-        *room = room.checked_sub(read.len() as u64).ok_or_else(too_large)?;
+        *room = room.checked_sub(read.len() as u64).ok_or_else(too_large_error)?;
         hasher.update(read);
         executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
         length += read.len() as u64;
@@ -280,9 +280,9 @@ fn copy_file(
     Ok(hasher.finalize())
 }
 
-fn too_large() -> CopyError {
+fn too_large_error() -> CopyError {
     CopyError::Submission(format!(
-        "it holds more than {MOST_FILES} files or {LARGEST_FOLDER} bytes: that is not a submission"
+        "it holds more than {MAX_FILES} files or {MAX_FOLDER_BYTES} bytes: that is not a submission"
     ))
 }
 
@@ -294,8 +294,8 @@ struct CopyBudget {
 
 /// Copies a submission's folder to a new folder that only the grader may enter.
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
-    let mut budget = CopyBudget { bytes: LARGEST_FOLDER, files: MOST_FILES };
-    let source = OpenFolder::open(from).map_err(|error| unreadable(from, error))?;
+    let mut budget = CopyBudget { bytes: MAX_FOLDER_BYTES, files: MAX_FILES };
+    let source = OpenFolder::open(from).map_err(|error| classify_error(from, error))?;
     fs::DirBuilder::new().mode(0o700).create(to).map_err(at(to))?;
     let target = OpenFolder::open(to).map_err(at(to))?;
     copy_folder(&source, Path::new(""), &target, 1, &mut budget)
@@ -309,24 +309,24 @@ fn copy_folder(
     depth: u32,
     budget: &mut CopyBudget,
 ) -> Result<(), CopyError> {
-    if depth > DEEPEST {
+    if depth > MAX_DEPTH {
         let top = name.components().next().map(|part| part.as_os_str().to_string_lossy().escape_debug().to_string());
         return Err(CopyError::Submission(format!(
-            "its folders are nested more than {DEEPEST} deep, in {}",
+            "its folders are nested more than {MAX_DEPTH} deep, in {}",
             top.unwrap_or_default()
         )));
     }
-    for entry in from.names().map_err(|error| unreadable(name, error))? {
+    for entry in from.names().map_err(|error| classify_error(name, error))? {
         if fosssim_intake::is_litter(&entry) {
             continue;
         }
-        budget.files = budget.files.checked_sub(1).ok_or_else(too_large)?;
+        budget.files = budget.files.checked_sub(1).ok_or_else(too_large_error)?;
         let (inner, target) = (name.join(&entry), to.path().join(&entry));
         match from.entry(OsStr::new(&entry)) {
             Ok(FolderEntry::File(file)) => {
                 let length = file.metadata().map_err(at(&inner))?.len();
                 if length > budget.bytes {
-                    return Err(too_large());
+                    return Err(too_large_error());
                 }
                 copy_file(file, &inner, &target, &mut budget.bytes, false)?;
             }
@@ -336,7 +336,7 @@ fn copy_folder(
                 copy_folder(&folder, &inner, &target, depth + 1, budget)?;
             }
             Ok(FolderEntry::Other) => {}
-            Err(error) => return Err(unreadable(&inner, error)),
+            Err(error) => return Err(classify_error(&inner, error)),
         }
     }
     Ok(())

@@ -13,9 +13,9 @@ use std::{
 };
 
 /// The prefix of the names of graders' folders.
-const PREFIX: &str = "fosssim-grader-";
+const FOLDER_PREFIX: &str = "fosssim-grader-";
 /// The name of the file that a grader keeps locked.
-const LOCK: &str = "lock";
+const LOCK_FILE: &str = "lock";
 /// A temporary folder of this grader that others cannot read. Dropping it removes the folder with everything that
 /// programs left in it.
 #[derive(Debug)]
@@ -90,11 +90,11 @@ impl Grader {
     }
 
     fn make(place: &Path) -> io::Result<Self> {
-        const TRIES: u32 = 10;
-        let mut problem = io::Error::other("somebody removes every folder that is made there");
-        for _ in 0..TRIES {
-            let path = make_closed(PREFIX, place)?.keep();
-            let lock = path.join(LOCK);
+        const MAX_TRIES: u32 = 10;
+        let mut problem = io::Error::other("another process removes every new folder there");
+        for _ in 0..MAX_TRIES {
+            let path = make_closed(FOLDER_PREFIX, place)?.keep();
+            let lock = path.join(LOCK_FILE);
             let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
                 // Another grader's sweep may have removed the folder before it was locked.
@@ -145,13 +145,13 @@ fn sweep_in(place: &Path) {
     let Ok(own) = fs::metadata("/proc/self") else { return };
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let path = entry.path();
-        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
+        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(FOLDER_PREFIX));
         // Check the entry itself, not a link's target. Other users' folders are left to their owners.
         if !ours || !entry.metadata().is_ok_and(|data| data.is_dir() && data.uid() == own.uid()) {
             continue;
         }
-        match collect::open_file(&path.join(LOCK), false) {
-            Ok((lock, _)) if lock.try_lock().is_ok() => clear(&path),
+        match collect::open_file(&path.join(LOCK_FILE), false) {
+            Ok((lock, _)) if lock.try_lock().is_ok() => remove_folder_of(&path),
             // The grader was killed before it made the lock, or is about to make it and will use another folder. A
             // folder that is not empty stays.
             Err(collect::CollectError::Missing { .. }) => drop(fs::remove_dir(&path)),
@@ -162,10 +162,10 @@ fn sweep_in(place: &Path) {
 
 /// Removes a grader's folder, and its lock last: a folder without a lock would count as new. A supervisor may still use
 /// the folder for a moment after the end of its grader.
-fn clear(path: &Path) {
-    const TRIES: u32 = 20;
+fn remove_folder_of(path: &Path) {
+    const MAX_TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(50);
-    for _ in 0..TRIES {
+    for _ in 0..MAX_TRIES {
         let folders = fs::read_dir(path).into_iter().flatten().flatten().filter(|entry| entry.path().is_dir());
         let removed = folders.map(|entry| collect::remove_folder(&entry.path())).filter(Result::is_err).count() == 0;
         if removed && collect::remove_folder(path).is_ok() {
@@ -217,7 +217,7 @@ mod tests {
             });
             for _ in 0..ROUNDS {
                 let grader = Grader::make(place.path()).unwrap();
-                assert!(grader.path.join(LOCK).exists());
+                assert!(grader.path.join(LOCK_FILE).exists());
             }
             done.store(true, std::sync::atomic::Ordering::Relaxed);
         });

@@ -25,7 +25,7 @@ pub enum RunPart {
 
 impl RunPart {
     /// The parts that the grader's own process does, with their names.
-    pub const OWN: [(Self, &str); 5] = [
+    pub const OWN_PARTS: [(Self, &str); 5] = [
         (Self::Start, "starting runs"),
         (Self::Judging, "judging"),
         (Self::Explaining, "explaining"),

@@ -5,7 +5,7 @@ mod overlap;
 pub use overlap::Overlap;
 
 use super::{
-    number::{exact, tidy},
+    number::{exact, format_tidy},
     style::{Look, Style},
     table::{Align, Cell, Table},
     view::{Number, document, numbers, view},
@@ -130,7 +130,7 @@ impl Detect<'_> {
                         let expected = curve.logged.coefficients();
                         // The lengths may differ by the coefficients that the course's library drops.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
-                            let mark = "right except for a factor and small leading coefficients, which is allowed";
+                            let mark = "right except for a factor and small leading coefficients, which are allowed";
                             format!(
                                 "  {}: {}\n    {}\n",
                                 curve.role,
@@ -143,7 +143,7 @@ impl Detect<'_> {
                     }
                 }
                 CallLog::Nothing => {
-                    text += &format!("  {}\n", style.paint(Look::Bad, "nothing for this pair in this pass"))
+                    text += &format!("  {}\n", style.paint(Look::Bad, "nothing is logged for this pair in this pass"))
                 }
                 CallLog::Unknown => {
                     text += "  the trace logged another number of polynomials, so this pair's are not known\n";
@@ -151,16 +151,16 @@ impl Detect<'_> {
             }
         }
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
-        text += &format!("  all positive: {}\n", intervals(&study.answer.positive, number));
+        text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive, number));
         let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
-        text += &format!("  {}\n", style.paint(look, &self.decision(|time| tidy(time, number))));
+        text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_tidy(time, number))));
         text += match study.certain {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
             None => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
         if let Some(right) = &study.right_approach {
-            text += &with_right(&study.answer, &right.answer, number);
+            text += &compare_approach(&study.answer, &right.answer, number);
         }
         text
     }
@@ -230,12 +230,12 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
 }
 
 /// Returns the text about the effect of the right approach polynomial.
-fn with_right(course: &Answer, right: &Answer, number: ShownNumber) -> String {
+fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
-        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", tidy(time, number)),
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", format_tidy(time, number)),
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
@@ -277,13 +277,12 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
     if dropped.iter().any(|&coefficient| coefficient != 0.0) {
-        let words =
-            format!("logged without its leading coefficients below 1e-12; with them: {}", polynomial(all, number));
+        let words = format!("logged without leading coefficients below 1e-12; with them: {}", polynomial(all, number));
         text += &format!("    {}\n", style.paint(Look::Faint, &words));
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
-    let mut zeros = real.iter().map(|&zero| tidy(zero, number)).collect::<Vec<_>>().join(", ");
+    let mut zeros = real.iter().map(|&zero| format_tidy(zero, number)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
@@ -292,19 +291,19 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     if complex > 0 {
         zeros += &format!(" ({complex} complex)");
     }
-    text += &format!("    zeros: {zeros}\n    positive: {}\n", intervals(&curve.positive, number));
+    text += &format!("    zeros: {zeros}\n    positive: {}\n", format_intervals(&curve.positive, number));
     text
 }
 
 /// Returns intervals as text: `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
-fn intervals(list: &[Interval], number: ShownNumber) -> String {
+fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
     let words = |interval: &Interval| match interval {
-        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", tidy(*lo, number)),
+        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", format_tidy(*lo, number)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
-        Interval { lo, hi } => format!("({}, {})", tidy(*lo, number), tidy(*hi, number)),
+        Interval { lo, hi } => format!("({}, {})", format_tidy(*lo, number), format_tidy(*hi, number)),
     };
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
@@ -436,7 +435,7 @@ view! {
             curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
         /// The time intervals in which the polynomial is positive, on the whole line, sorted and disjoint. An interval
         /// may be a single time.
-        positive: Vec<[Number; 2]> = sets(&curve.positive),
+        positive: Vec<[Number; 2]> = to_pairs(&curve.positive),
     }
 }
 
@@ -445,7 +444,7 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct AnswerView from answer: Answer {
         /// The time intervals in which all polynomials are positive, sorted and disjoint.
-        positive: Vec<[Number; 2]> = sets(&answer.positive),
+        positive: Vec<[Number; 2]> = to_pairs(&answer.positive),
         /// Whether the pair collides within the step.
         collides: bool = answer.decision.collides(),
         /// The first time from which all polynomials are positive; inf if there is none.
@@ -468,7 +467,7 @@ struct RightApproachView {
     answer: AnswerView,
 }
 
-fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
+fn to_pairs(list: &[Interval]) -> Vec<[Number; 2]> {
     list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
 }
 
@@ -504,10 +503,10 @@ mod tests {
     #[test]
     fn sets_of_times_are_written_as_in_books() {
         let set = |lo, hi| Interval { lo, hi };
-        assert_eq!(intervals(&[], exact), "nowhere");
-        assert_eq!(intervals(&[Interval::EVERYTHING], exact), "always");
+        assert_eq!(format_intervals(&[], exact), "nowhere");
+        assert_eq!(format_intervals(&[Interval::EVERYTHING], exact), "always");
         assert_eq!(
-            intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], exact),
+            format_intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], exact),
             "(-inf, 0.25) and at 0.5 (intervals touch)"
         );
     }

@@ -6,7 +6,7 @@ use super::{
     smallest::{self, SmallestView},
     style::{Look, Style},
     view::{FindingView, document, view},
-    words::{describe_located, first_divergence},
+    words::{describe_first, describe_located},
 };
 use crate::foreign::one_line;
 use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure, smallest::SmallestScene};
@@ -50,7 +50,7 @@ impl Diagnosis {
         let traces = format_count(self.cases.len() as u64, "trace");
         let _ = writeln!(text, "{wrong} of {traces} {is} wrong by the fair rules.\n");
         if wrong == 0 {
-            text += "These scenes show single formulas; a suite has more of them: fosssim-oracle grade PROGRAM\n\n";
+            text += "These scenes show single formulas. A suite has more: fosssim-oracle grade PROGRAM\n\n";
         }
         if let Some(found) = &self.located {
             let heading = style.paint(Look::Strong, "Where it fails");
@@ -64,9 +64,9 @@ impl Diagnosis {
             } else {
                 likely += 1;
                 match (likely, common.is_unexplained()) {
-                    (_, true) => "What is wrong in most",
+                    (_, true) => "Most frequent fault",
                     (1, _) => "Likely cause of most",
-                    _ => "Likely cause of the others, or a second cause of the same ones",
+                    _ => "Likely cause of the other traces, or a second cause of the same ones",
                 }
             };
             let heading = format!("{most} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
@@ -75,7 +75,7 @@ impl Diagnosis {
             text.push('\n');
         }
         for case in &self.cases {
-            let _ = writeln!(text, "{}", head(case, style));
+            let _ = writeln!(text, "{}", render_head(case, style));
             for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
                 text += &render_mistakes(std::slice::from_ref(other), style);
             }
@@ -95,14 +95,14 @@ impl Diagnosis {
     }
 }
 
-fn head(case: &Case, style: Style) -> String {
+fn render_head(case: &Case, style: Style) -> String {
     let verdict = if case.accepted { style.paint(Look::Good, "right") } else { style.paint(Look::Bad, "wrong") };
     let mut line = format!("{verdict}  {}", case.scene);
     if let Some(note) = &case.note {
         let _ = write!(line, ": {note}");
     }
     if let (Some(first), true) = (&case.first, case.explanations.is_empty()) {
-        let _ = write!(line, ": {}", first_divergence(first));
+        let _ = write!(line, ": {}", describe_first(first));
     }
     line
 }
@@ -118,7 +118,7 @@ fn render_single(case: &Case, style: Style) -> String {
         return text;
     }
     if let Some(first) = first {
-        let _ = writeln!(text, "{}", first_divergence(first));
+        let _ = writeln!(text, "{}", describe_first(first));
     }
     if explanations.is_empty() && first.is_none() {
         text += "No known mistake explains it.\n";

@@ -4,7 +4,7 @@
 //! Data of a submission appear only as numbers.
 use super::{
     detect::polynomial,
-    number::{exact, format_count, tidy},
+    number::{exact, format_count, format_tidy},
     style::Style,
     view::{key, view},
     words::explanation::{details, known_sentence, place, what},
@@ -12,7 +12,7 @@ use super::{
 use fosssim_mistakes::diagnose::{About, Example, ExamplePlace, ExampleValue, Explanation};
 
 /// The maximum number of indistinguishable mistakes that are listed.
-const LISTED: usize = 3;
+const MAX_LISTED: usize = 3;
 
 /// Returns the lines about explanations, the likeliest first. Lines below a sentence are indented by two.
 #[must_use]
@@ -61,7 +61,7 @@ impl ExplanationParts {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} checked"))),
             (About::Unfinished | About::Pairs(_), _) => (false, None),
-            (About::Mistake, _) => (true, Some(reproduces(*reproduced, *samples))),
+            (About::Mistake, _) => (true, Some(describe_evidence(*reproduced, *samples))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
         let mut details: Vec<String> = details(explanation).iter().map(|line| style.set(line)).collect();
@@ -74,7 +74,7 @@ impl ExplanationParts {
 }
 
 /// Returns the number of tried wrong steps that a mistake reproduces; the trace may have more wrong steps.
-fn reproduces(reproduced: u64, samples: u64) -> String {
+fn describe_evidence(reproduced: u64, samples: u64) -> String {
     match samples {
         1 if reproduced == 1 => "reproduces the wrong step tried".to_owned(),
         _ if reproduced == samples => format!("reproduces all {samples} wrong steps tried"),
@@ -95,7 +95,7 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
 /// sentence, and are counted.
 fn describe_others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known_sentence(key)).collect();
-    let (shown, more) = named.split_at(named.len().min(LISTED));
+    let (shown, more) = named.split_at(named.len().min(MAX_LISTED));
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
@@ -113,7 +113,7 @@ fn list_sentences(sentences: &[String]) -> String {
 fn example_lines(example: &Example, style: Style) -> Vec<String> {
     let given = example.given.iter();
     let given: Vec<String> =
-        given.map(|given| format!("{} = {}", style.set(&key(&given.input)), vector(&given.value))).collect();
+        given.map(|given| format!("{} = {}", style.set(&key(&given.input)), format_vector(&given.value))).collect();
     let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));
@@ -123,20 +123,20 @@ fn example_lines(example: &Example, style: Style) -> Vec<String> {
         ExamplePlace::Given { .. } | ExamplePlace::Polynomial { .. } | ExamplePlace::NumberedPolynomial(_)
     );
     let [expected, actual] = [&example.expected, &example.actual]
-        .map(|values| if is_polynomial { polynomial(values, exact) } else { list(values) });
+        .map(|values| if is_polynomial { polynomial(values, exact) } else { format_list(values) });
     lines.extend([format!("  expected  {expected}"), format!("  actual    {actual}")]);
     lines
 }
 
-fn vector(values: &[f64]) -> String {
-    let number = |value: &f64| tidy(*value, exact);
+fn format_vector(values: &[f64]) -> String {
+    let number = |value: &f64| format_tidy(*value, exact);
     match values {
         [value] => number(value),
         values => format!("({})", values.iter().map(number).collect::<Vec<_>>().join(", ")),
     }
 }
 
-fn list(values: &[f64]) -> String {
+fn format_list(values: &[f64]) -> String {
     if values.is_empty() {
         return "nothing".to_owned();
     }

@@ -9,8 +9,8 @@ use fosssim_mistakes::together::{for_students, told_to_students};
 use std::borrow::Cow;
 
 /// The warning in a report that leaves groups out.
-const OTHERS: &str =
-    "points, verdict and likely mistakes are those of the groups shown here; the grade has others, too";
+const HIDDEN_GROUPS_WARNING: &str =
+    "points, verdict and likely mistakes are those of the groups shown here; other groups are hidden";
 
 /// Declares the formats. A row has the format's name, whether one document holds the grades of several submissions, and
 /// the renderer for these grades and for the entries that are not submissions.
@@ -59,9 +59,9 @@ formats! {
     /// JUnit XML (`schemas/junit.xsd`).
     Junit "junit" true |grades, passed_over| junit::render(grades, class_entries(grades, passed_over));
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope "gradescope" false |grades, _| first(grades, gradescope::render);
+    Gradescope "gradescope" false |grades, _| render_first(grades, gradescope::render);
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn "prairielearn" false |grades, _| first(grades, prairielearn::render);
+    Prairielearn "prairielearn" false |grades, _| render_first(grades, prairielearn::render);
     /// A Markdown summary, for GitHub's job summary.
     Github "github" true
         |grades, passed_over| github::annotations(grades) + &github::passed_over(class_entries(grades, passed_over));
@@ -76,14 +76,14 @@ formats! {
     /// disk.
     Html "html" false
         |grades, _| {
-            first(grades, |grade| {
+            render_first(grades, |grade| {
                 GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html()
             })
         };
 }
 
 /// Renders the only grade of a format for one submission.
-fn first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
+fn render_first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
     grades.first().map(render).unwrap_or_default()
 }
 
@@ -128,7 +128,7 @@ impl Format {
             (_, Audience::Student) => {
                 let mut shown = for_students(grade);
                 if shown.groups.len() < grade.groups.len() {
-                    shown.to_mut().warnings.push(OTHERS.to_owned());
+                    shown.to_mut().warnings.push(HIDDEN_GROUPS_WARNING.to_owned());
                 }
                 shown
             }

@@ -14,8 +14,8 @@ pub fn with_signs(line: &str) -> String {
         let done = &line[..line.len() - rest.len()];
         let word_end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
         let (sign, length) = match first {
-            _ if word_end > 0 => (symbol(&rest[..word_end], &rest[word_end..]), word_end),
-            '^' => power(&rest[1..]).map_or(('^'.to_string(), 1), |(sign, length)| (sign, length + 1)),
+            _ if word_end > 0 => (format_symbol(&rest[..word_end], &rest[word_end..]), word_end),
+            '^' => parse_power(&rest[1..]).map_or(('^'.to_string(), 1), |(sign, length)| (sign, length + 1)),
             '<' | '>' if rest[1..].starts_with('=') => (if first == '<' { '≤' } else { '≥' }.to_string(), 2),
             '.' if is_between_factors(done, &rest[1..]) => ("·".to_owned(), 1),
             '-' if is_minus(done, &rest[1..]) => ("−".to_owned(), 1),
@@ -28,7 +28,7 @@ pub fn with_signs(line: &str) -> String {
 }
 
 /// Returns a name in a formula with subscript digits and Greek letters.
-fn symbol(word: &str, after: &str) -> String {
+fn format_symbol(word: &str, after: &str) -> String {
     let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
     let number = &word[letters.len()..];
     let is_index = (1..=2).contains(&number.len());
@@ -51,7 +51,7 @@ fn shift_digits(digits: &str, zero: char) -> String {
 }
 
 /// Returns the power after a `^`, and its length.
-fn power(rest: &str) -> Option<(String, usize)> {
+fn parse_power(rest: &str) -> Option<(String, usize)> {
     let raise = |c| "⁰¹²³⁴⁵⁶⁷⁸⁹ᵀ".chars().nth("0123456789T".find(c)?);
     let raised: String = rest.chars().map_while(raise).collect();
     let length = raised.chars().count();

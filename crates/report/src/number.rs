@@ -15,19 +15,19 @@ fn fraction(value: f64) -> Option<String> {
 }
 
 /// The bound below which numbers count as zero, next to numbers near 1.
-const NOTHING: f64 = 1e-13;
+const ZERO_BOUND: f64 = 1e-13;
 
 /// Returns a number as in a calculation by hand: short decimals, a short fraction, or six digits.
 pub(crate) fn short(value: f64) -> String {
     // Drop the sign of zero, which a calculation by hand does not have.
-    tidy(if value.abs() < NOTHING { 0.0 } else { value }, general)
+    format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, general)
 }
 
 /// Returns short decimals or a short fraction if the number equals one up to a few roundings; otherwise the result of
 /// `other`.
-pub(crate) fn tidy(value: f64, other: fn(f64) -> String) -> String {
+pub(crate) fn format_tidy(value: f64, other: fn(f64) -> String) -> String {
     let rounded = (value * 1e6).round() / 1e6;
-    let is_near = value.abs() < 1e9 && (rounded - value).abs() <= NOTHING * value.abs();
+    let is_near = value.abs() < 1e9 && (rounded - value).abs() <= ZERO_BOUND * value.abs();
     if is_near { exact(rounded) } else { fraction(value).unwrap_or_else(|| other(value)) }
 }
 
@@ -119,7 +119,7 @@ mod tests {
 
     #[test]
     fn fractions_are_short_and_near() {
-        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| tidy(value, exact));
+        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| format_tidy(value, exact));
         assert_eq!(texts, ["1/3", "-7/11", "0.3", "0.25", "0.3333333"]);
     }
 

@@ -2,11 +2,11 @@
 use fosssim_model::scene::{Problem, Problems, Severity};
 
 /// The maximum number of characters of a source line that are shown.
-const WIDEST: usize = 100;
+const MAX_SHOWN_CHARS: usize = 100;
 
 /// The maximum number of bytes that can be shown on either side of a place: a character takes at most four bytes, and
 /// lines may be megabytes long.
-const REACH: usize = 4 * WIDEST + 8;
+const MAX_SHOWN_BYTES: usize = 4 * MAX_SHOWN_CHARS + 8;
 
 /// Returns the problems of a rejected scene: a head line, then each problem with its source line.
 ///
@@ -43,7 +43,7 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let warning = if problem.severity == Severity::Warning { "warning: " } else { "" };
     let mut text = format!("{name}:{line}:{column}: {warning}{message}\n");
     let start = span.start.min(source.len());
-    let from = start.saturating_sub(REACH);
+    let from = start.saturating_sub(MAX_SHOWN_BYTES);
     let line_start = source[from..start].iter().rposition(|&byte| byte == b'\n').map_or(from, |at| from + at + 1);
     let end = span.end.clamp(start, line_end(source, start));
     let before = escape_line(&source[line_start..start]);
@@ -58,10 +58,10 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
         return text;
     }
     // Cut long lines on both sides of the place.
-    let cut = before.chars().count().saturating_sub(WIDEST / 2);
+    let cut = before.chars().count().saturating_sub(MAX_SHOWN_CHARS / 2);
     let (dots, indent) = if cut > 0 { ("...", 3) } else { ("", 0) };
     let before: String = before.chars().skip(cut).collect();
-    let room = WIDEST.saturating_sub(before.chars().count());
+    let room = MAX_SHOWN_CHARS.saturating_sub(before.chars().count());
     let marked: String = marked.chars().take(room.max(1)).collect();
     let tail_room = room.saturating_sub(marked.chars().count());
     let more = if after.chars().count() > tail_room { "..." } else { "" };
@@ -76,7 +76,7 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
 
 /// Returns the end of the line after `at`, or of the part that can be shown.
 fn line_end(source: &[u8], at: usize) -> usize {
-    let to = source.len().min(at + REACH);
+    let to = source.len().min(at + MAX_SHOWN_BYTES);
     source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }
 
@@ -123,7 +123,7 @@ mod tests {
         let source = format!("{}HERE{}", "a".repeat(500), "b".repeat(500));
         let text = block("s", source.as_bytes(), &problem(&source, "HERE", 1, 501));
         let lines: Vec<_> = text.lines().collect();
-        assert!(lines[1].len() < WIDEST + 15, "{text}");
+        assert!(lines[1].len() < MAX_SHOWN_CHARS + 15, "{text}");
         assert_eq!(lines[1].find("HERE"), lines[2].find("^^^^"), "{text}");
     }
 

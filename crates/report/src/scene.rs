@@ -14,7 +14,7 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     let line = |(name, scene): &(&str, Scene)| {
         let blanks = " ".repeat(width - wrap::columns(name));
         let size = style.paint(Look::Faint, &format!("({})", describe_size(scene)));
-        let words = scene.description.as_deref().map(|text| one_line(sentence(text)) + " ").unwrap_or_default();
+        let words = scene.description.as_deref().map(|text| one_line(first_sentence(text)) + " ").unwrap_or_default();
         format!("asset:{name}{blanks}  {words}{size}\n")
     };
     scenes.iter().map(line).collect()
@@ -36,7 +36,7 @@ fn describe_size(scene: &Scene) -> String {
 }
 
 /// Returns the first sentence of a text.
-fn sentence(text: &str) -> &str {
+fn first_sentence(text: &str) -> &str {
     let text = text.trim();
     text.match_indices(['.', ';', ':'])
         .find(|(at, _)| text[at + 1..].starts_with(' '))
@@ -49,8 +49,8 @@ mod tests {
 
     #[test]
     fn the_first_sentence_ends_at_a_stop_before_a_blank() {
-        assert_eq!(sentence("Two balls meet at t = 0.5. A wrong program misses."), "Two balls meet at t = 0.5.");
-        assert_eq!(sentence("A cue ball breaks; cushions on four sides."), "A cue ball breaks");
-        assert_eq!(sentence("one"), "one");
+        assert_eq!(first_sentence("Two balls meet at t = 0.5. A wrong program misses."), "Two balls meet at t = 0.5.");
+        assert_eq!(first_sentence("A cue ball breaks; cushions on four sides."), "A cue ball breaks");
+        assert_eq!(first_sentence("one"), "one");
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     number::format_count,
     style::{Look, Style},
     view::{FindingView, view},
-    words::first_divergence,
+    words::describe_first,
 };
 use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestScene};
 
@@ -42,7 +42,7 @@ pub fn text(small: &SmallestScene, file: Option<&str>, style: Style) -> String {
 fn causes(small: &SmallestScene, style: Style) -> Vec<String> {
     let SmallestScene { note, first, explanations, .. } = small;
     let told = lines(&explanations[..explanations.len().min(1)], style);
-    let first = first.as_ref().filter(|_| told.is_empty()).map(first_divergence);
+    let first = first.as_ref().filter(|_| told.is_empty()).map(describe_first);
     note.iter().cloned().chain(first).chain(told).collect()
 }
 

@@ -7,7 +7,7 @@
 use unicode_width::UnicodeWidthChar;
 
 /// The minimum width of the last column for which continued lines keep its indentation.
-const ROOM: usize = 30;
+const MIN_LAST_COLUMN: usize = 30;
 
 /// Returns the text with no line wider than `width`, if its words allow it.
 #[must_use]
@@ -81,7 +81,7 @@ fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
         let rest = line[at..].trim_start_matches(' ');
         (!rest.is_empty()).then(|| columns(&line[..line.len() - rest.len()]))
     });
-    let last = columns_at.take_while(|at| *at < width).last().filter(|at| at + ROOM <= width);
+    let last = columns_at.take_while(|at| *at < width).last().filter(|at| at + MIN_LAST_COLUMN <= width);
     (last.unwrap_or(lead + 4), "")
 }
 

@@ -13,16 +13,16 @@ pub fn format_minute(milliseconds: i64) -> String {
 }
 
 /// Formats a time for other programs (ISO 8601), such as `2026-11-22T08:45:12.345+00:00`.
-pub fn exact(milliseconds: i64) -> String {
+pub fn format_iso(milliseconds: i64) -> String {
     format(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
 /// The ranges of plausible times in milliseconds. Numbers between them are probably seconds.
-pub const PLAUSIBLE: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
+pub const MILLISECOND_RANGES: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
 
 /// Returns whether a number is a plausible time in milliseconds.
 pub fn is_plausible(milliseconds: i64) -> bool {
-    PLAUSIBLE.iter().any(|range| range.contains(&milliseconds))
+    MILLISECOND_RANGES.iter().any(|range| range.contains(&milliseconds))
 }
 
 /// Reads a time in ISO 8601, such as `2026-12-01T23:59:00+01:00`; seconds may be missing, and `Z` is allowed. The time
@@ -74,7 +74,7 @@ mod tests {
         ] {
             assert_eq!(format_minute(milliseconds), text);
         }
-        assert_eq!(exact(1_795_336_859_999), "2026-11-22T08:40:59.999+00:00");
-        assert_eq!(exact(-1), "1969-12-31T23:59:59.999+00:00");
+        assert_eq!(format_iso(1_795_336_859_999), "2026-11-22T08:40:59.999+00:00");
+        assert_eq!(format_iso(-1), "1969-12-31T23:59:59.999+00:00");
     }
 }

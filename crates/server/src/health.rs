@@ -9,10 +9,10 @@ use std::time::Duration;
 
 /// The number of consecutive faults after which a worker leaves jobs to workers that had no fault since their last
 /// result.
-const STEPS_ASIDE: i64 = 3;
+const MAX_FAULTS: i64 = 3;
 
 /// The maximum pause of a worker; it starts at a second and doubles.
-const LONGEST_ASIDE: Duration = Duration::from_secs(60);
+const MAX_PAUSE: Duration = Duration::from_secs(60);
 
 /// Returns the time after the last sign of life for which a worker counts as alive, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
@@ -73,10 +73,10 @@ pub async fn may_claim(
         }
     }
     let statement = "SELECT in_a_row, {now} - fault_at AS since FROM worker WHERE name = ? AND in_a_row >= ?";
-    let row = transaction.row(statement, values![claimant.worker, STEPS_ASIDE]).await?;
+    let row = transaction.row(statement, values![claimant.worker, MAX_FAULTS]).await?;
     let Some(row) = row else { return Ok(true) };
-    let steps = u32::try_from(row.int("in_a_row")? - STEPS_ASIDE).unwrap_or(0).min(16);
-    let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(LONGEST_ASIDE);
+    let steps = u32::try_from(row.int("in_a_row")? - MAX_FAULTS).unwrap_or(0).min(16);
+    let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(MAX_PAUSE);
     // A fault in the future is from a clock that was set back.
     let since = row.maybe_int("since")?.and_then(|since| u64::try_from(since).ok());
     if since.is_none_or(|since| Duration::from_millis(since) >= aside) {

@@ -74,7 +74,7 @@ impl Instruments {
         page.0.register(Box::new(ProcessCollector::for_self()))?;
         page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1.0)])?;
         if let Some((free, size)) = storage.disk() {
-            page.write_number("disk_free_bytes", "Free room on the data folder's disk.", free as f64)?;
+            page.write_number("disk_free_bytes", "Free space on the data folder's disk.", free as f64)?;
             page.write_number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;
         }
         page.write_number("database_up", "Whether the database answers.", queue.is_some().into())?;
@@ -154,25 +154,25 @@ impl MetricsPage {
             let states = ["waiting", "running", "done", "buried", "cancelled"];
             self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
         }
-        let help = "How long the oldest waiting upload has waited.";
+        let help = "The waiting time of the oldest waiting upload.";
         self.write_number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
         let idle = queue.workers - queue.working - queue.aside;
         let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.aside as f64)];
-        let help = "Workers that were seen lately: they grade, wait for a job, or can't grade.";
+        let help = "Workers that were seen recently: they grade, wait for a job, or can't grade.";
         self.gauge("workers_by_state", help, "state", &by_state)?;
         for (name, help, value) in [
-            ("workers", "Workers that were seen lately.", queue.workers),
+            ("workers", "Workers that were seen recently.", queue.workers),
             ("slots", "Their slots.", queue.slots),
             ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
         ] {
             self.write_number(name, help, value as f64)?;
         }
         let kept = [("all", queue.kept[0] as f64), ("largest course", queue.kept[1] as f64)];
-        self.gauge("kept_bytes", "Uploads and reports that are kept: of all, of the largest course.", "of", &kept)?;
+        self.gauge("kept_bytes", "Stored uploads and reports: of all courses, of the largest course.", "of", &kept)?;
         self.write_counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
         let kinds = ["graded", "failed try", "late answer", "buried"];
         let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));
         let kinds: Vec<(&str, f64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
-        self.write_counter("events_total", "Results, and what went wrong with jobs.", "kind", &kinds)
+        self.write_counter("events_total", "Results and errors of jobs.", "kind", &kinds)
     }
 }

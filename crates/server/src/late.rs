@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// The number of milliseconds of a day.
-const DAY: i64 = 86_400_000;
+const DAY_MILLIS: i64 = 86_400_000;
 
 /// The settings of an assignment for late submissions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
@@ -40,7 +40,7 @@ impl LatePolicy {
             Some(due.checked_add_days(Days::new(u64::try_from(days).ok()?))?.timestamp_millis())
         });
         // There is no calendar, or the clocks skip that time.
-        by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY)))
+        by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
     }
 
     /// Returns the delay of a submission that arrived at `came_at`, with the student's own due date if there is one.
@@ -50,7 +50,7 @@ impl LatePolicy {
         // The delay is capped at the allowed late days, because an extension may have been withdrawn. If late uploads
         // are no longer accepted, earlier ones keep their deduction.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
-        let mut days = ((came_at - due) / DAY - 1).max(0);
+        let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < came_at {
             days += 1;
         }
@@ -84,12 +84,12 @@ mod tests {
         let due = 1_700_000_000_000;
         let policy = LatePolicy { due_at: Some(due), late_days: 3, late_percent: 40, time_zone: None };
         let late = |after| policy.lateness(None, due + after).map(|late| (late.days, late.percent));
-        assert_eq!([late(-DAY), late(0), late(1)], [None, None, Some((1, 40))]);
-        assert_eq!([late(DAY), late(DAY + 1)], [Some((1, 40)), Some((2, 80))]);
-        assert_eq!([late(3 * DAY), late(9 * DAY)], [Some((3, 100)); 2], "it never costs more than all");
-        assert_eq!(policy.lateness(Some(due + DAY), due + DAY), None, "an extension moves the due date");
-        assert_eq!(policy.closes_at(due), due + 3 * DAY);
-        assert_eq!(policy.lateness(Some(due - DAY), due), None, "and never forwards");
+        assert_eq!([late(-DAY_MILLIS), late(0), late(1)], [None, None, Some((1, 40))]);
+        assert_eq!([late(DAY_MILLIS), late(DAY_MILLIS + 1)], [Some((1, 40)), Some((2, 80))]);
+        assert_eq!([late(3 * DAY_MILLIS), late(9 * DAY_MILLIS)], [Some((3, 100)); 2], "it never costs more than all");
+        assert_eq!(policy.lateness(Some(due + DAY_MILLIS), due + DAY_MILLIS), None, "an extension moves the due date");
+        assert_eq!(policy.closes_at(due), due + 3 * DAY_MILLIS);
+        assert_eq!(policy.lateness(Some(due - DAY_MILLIS), due), None, "and never forwards");
         let closed = LatePolicy { late_days: 0, ..policy };
         assert_eq!(closed.lateness(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
         let never = LatePolicy { late_percent: 0, ..closed };
@@ -110,6 +110,6 @@ mod tests {
         assert_eq!(days("2026-10-25T23:59+01:00"), Some(1));
         assert_eq!(days("2026-10-26T00:00+01:00"), Some(2));
         assert_eq!(policy.closes_at(due), crate::calendar::read("2026-10-26T23:59+01:00").expect("a moment"));
-        assert_eq!(LatePolicy { time_zone: None, ..policy }.closes_at(due), due + 2 * DAY);
+        assert_eq!(LatePolicy { time_zone: None, ..policy }.closes_at(due), due + 2 * DAY_MILLIS);
     }
 }

@@ -44,7 +44,7 @@ pub async fn fail(
         note_late(transaction, lease, "a failure").await?;
         return Ok(failure);
     }
-    let row = about(transaction, lease.job).await?;
+    let row = find_job(transaction, lease.job).await?;
     if failure == Failure::Buried {
         bury(transaction, lease.job, lease.attempt, fault).await?;
     } else {
@@ -92,7 +92,7 @@ struct JobFacts {
     seconds: i64,
 }
 
-async fn about(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
+async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
     let statement = "SELECT job.submission, job.campaign, job.payload, job.asked_by,
                 coalesce(job.worker, job.failed_by, '') AS worker,
            submission.assignment, assignment.course,
@@ -124,7 +124,7 @@ async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> 
     let known =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
     if known.is_some() {
-        let row = about(transaction, lease.job).await?;
+        let row = find_job(transaction, lease.job).await?;
         note(transaction, &row, "late answer", &format!("{what}, of attempt {}", lease.attempt)).await?;
     }
     Ok(())
@@ -152,7 +152,7 @@ async fn write_result(
     attempt: i64,
     outcome: &Outcome,
 ) -> Result<JobFacts, DbError> {
-    let about = about(transaction, job).await?;
+    let about = find_job(transaction, job).await?;
     // Jobs of other lanes have no result.
     let Some(submission) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };

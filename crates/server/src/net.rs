@@ -8,7 +8,7 @@ use tokio_util::sync::CancellationToken;
 use ureq::Agent;
 
 /// The time for open connections when the server stops.
-const GRACE: Duration = Duration::from_secs(20);
+const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
 /// Serves until `stop` is canceled and the requests that have arrived are answered.
 ///
@@ -25,7 +25,7 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
     let serving = axum::serve(listener, service).with_graceful_shutdown(stop.clone().cancelled_owned());
     tokio::select! {
         served = serving => served,
-        () = async { stop.cancelled().await; tokio::time::sleep(GRACE).await } => {
+        () = async { stop.cancelled().await; tokio::time::sleep(GRACE_PERIOD).await } => {
             tracing::warn!("some connections did not end in time");
             Ok(())
         }

@@ -20,16 +20,16 @@ use ureq::Agent;
 use url::Url;
 
 /// The time for which the provider's configuration is used without reading it again.
-const FRESH: Duration = Duration::from_secs(3600);
+const CONFIGURATION_LIFETIME: Duration = Duration::from_secs(3600);
 
 /// The minimum time between two readings, for an unknown key or after a failure.
-const PAUSE: Duration = Duration::from_secs(1);
+const MIN_PAUSE: Duration = Duration::from_secs(1);
 
 /// The maximum time to wait for the provider's answer.
-const PATIENCE: Duration = Duration::from_secs(10);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The maximum size of an answer, in bytes.
-const ANSWER: u64 = 1 << 20;
+const MAX_ANSWER_BYTES: u64 = 1 << 20;
 
 /// The accepted signature algorithms of tokens: those whose private key only the provider has.
 const ALGORITHMS: [CoreJwsSigningAlgorithm; 9] = [
@@ -146,7 +146,7 @@ impl Provider {
             client: ClientId::new(client),
             secret: ClientSecret::new(secret),
             domain: domain.map(|domain| domain.to_ascii_lowercase()),
-            agent: net::agent(over_http, PATIENCE),
+            agent: net::agent(over_http, ANSWER_TIMEOUT),
             published: Mutex::default(),
         })
     }
@@ -160,7 +160,7 @@ impl Provider {
     async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
         let mut published = self.published.lock().await;
         if let Some(KnownConfiguration { asked_at, metadata }) = &*published
-            && asked_at.elapsed() < if metadata.is_ok() { age } else { PAUSE }
+            && asked_at.elapsed() < if metadata.is_ok() { age } else { MIN_PAUSE }
         {
             return metadata.clone();
         }
@@ -169,7 +169,7 @@ impl Provider {
         let metadata = asked.map_err(|error| {
             let why = format!("{:#}", anyhow!(error));
             tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
-            ProviderFault::Away(format!("{} does not answer as it should", self.label))
+            ProviderFault::Away(format!("{} returned an unexpected answer", self.label))
         });
         *published = Some(KnownConfiguration { asked_at: Instant::now(), metadata: metadata.clone() });
         metadata
@@ -192,7 +192,7 @@ impl Provider {
     ///
     /// When the provider does not answer.
     pub async fn address(&self, redirect: &str, words: SignInWords) -> Result<Url, ProviderFault> {
-        let client = self.client(FRESH, redirect).await?;
+        let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let SignInWords { state, nonce, verifier } = words;
         let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));
         let flow = CoreAuthenticationFlow::AuthorizationCode;
@@ -215,7 +215,7 @@ impl Provider {
         code: String,
         words: SignInWords,
     ) -> Result<ProviderPerson, ProviderFault> {
-        let client = self.client(FRESH, redirect).await?;
+        let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let http = |request| send(self.agent.clone(), request);
         let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(untrusted_answer)?;
         let asked = asked.set_pkce_verifier(PkceCodeVerifier::new(words.verifier)).request_async(&http).await;
@@ -223,12 +223,12 @@ impl Provider {
             RequestTokenError::Request(_) => ProviderFault::Away(format!("{} does not answer", self.label)),
             error => untrusted_answer(error),
         })?;
-        let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("there is no token about a person")))?;
+        let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("the provider returned no ID token")))?;
         let nonce = Nonce::new(words.nonce);
         let claims = match claims(&client, token, &nonce) {
             // Providers change their keys.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
-                claims(&self.client(PAUSE, redirect).await?, token, &nonce)
+                claims(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
             }
             claims => claims,
         };
@@ -289,7 +289,7 @@ fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
 async fn send(agent: Agent, request: HttpRequest) -> Result<HttpResponse, std::io::Error> {
     let sent = tokio::task::spawn_blocking(move || {
         let (head, mut body) = agent.run(request).map_err(std::io::Error::other)?.into_parts();
-        let body = body.with_config().limit(ANSWER).read_to_vec().map_err(std::io::Error::other)?;
+        let body = body.with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(std::io::Error::other)?;
         Ok(HttpResponse::from_parts(head, body))
     });
     sent.await?

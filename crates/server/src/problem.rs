@@ -59,7 +59,7 @@ problems! {
     /// The person must sign in again, because somebody else may use the browser.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
         detail,
-        "sign in again on this server's pages, and do it there";
+        "sign in again on this server's pages, and repeat the action there";
     /// Another site may have made the browser send the request.
     cross_site(): 403, "cross-site", "Sent from another site",
         "the request came from another site, or does not say where it came from",
@@ -82,7 +82,7 @@ problems! {
         "check the address";
     /// The thing existed, and is no longer kept.
     removed(): 410, "removed", "No longer kept",
-        "the upload and its reports were removed; the grade and its history are kept",
+        "the upload and its reports were removed; the grade and its history stay",
         "ask the course's staff about the grade";
     /// A part of the request is invalid.
     invalid(detail: impl Into<String>): 400, "invalid", "Not understood",
@@ -107,7 +107,7 @@ problems! {
     /// The upload has more bytes than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most)),
-        "send less: no build folders, no traces in an archive of sources";
+        "send less: leave out build folders, and traces in an archive of sources";
     /// Another request has more bytes than allowed.
     too_long(most: usize): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most as u64)),
@@ -119,12 +119,12 @@ problems! {
     /// The disk is nearly full.
     no_room(): 507, "no-room", "No room",
         "the server's disk is nearly full; nothing was stored",
-        "tell the administrator, and send it again later";
+        "tell the administrator, and send the request again later";
     /// The limit of stored bytes is reached.
-    quota(detail: impl Into<String>): 507, "quota", "No room for more uploads",
+    quota(detail: impl Into<String>): 507, "quota", "No space for more uploads",
         detail,
-        "ask the course's staff: the server's administrator can give more room, or have old uploads removed; \
-                      nothing was stored";
+        "ask the course's staff: the server's administrator can increase the limit, or remove old uploads; nothing \
+                      was stored";
     /// The body arrived too slowly.
     too_slow(): 408, "too-slow", "Too slow",
         "the rest of the request did not arrive in time",
@@ -136,11 +136,11 @@ problems! {
     /// The server failed, and a retry may succeed.
     unavailable(detail: impl Into<String>): 503, "unavailable", "Not available",
         detail,
-        "try again in a moment; what was accepted is safe";
+        "try again in a moment; accepted uploads are safe";
     /// The server failed.
     fault(): 500, "fault", "The server failed",
         "something went wrong here",
-        "try again, and tell the administrator: the log says more";
+        "try again, and tell the administrator; the log has details";
 }
 
 /// Returns an error unless a condition holds.

@@ -11,10 +11,10 @@ use std::{collections::HashSet, time::Duration};
 use thiserror::Error;
 
 /// The minimum age for a removal; younger artifacts may get a reference soon.
-pub const LEAST_AGE: Duration = Duration::from_secs(24 * 3600);
+pub const MIN_AGE: Duration = Duration::from_secs(24 * 3600);
 
 /// The number of submissions that expire in one transaction.
-const BATCH: i64 = 500;
+const BATCH_SIZE: i64 = 500;
 
 /// The reason why nothing was removed, or not everything.
 #[derive(Debug, Error)]
@@ -29,7 +29,7 @@ pub enum RetentionError {
 
 /// The numbers of removed things.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct GivenUp {
+pub struct RemovalCounts {
     /// The number of submissions whose upload and reports expired.
     pub submissions: u64,
     /// The number of removed artifacts.
@@ -47,13 +47,13 @@ pub async fn give_up(
     store: &Store,
     keep: Option<Duration>,
     least: Duration,
-) -> Result<GivenUp, RetentionError> {
+) -> Result<RemovalCounts, RetentionError> {
     let submissions = match keep {
         Some(keep) => give_up_submissions(database, millis(keep)).await?,
         None => 0,
     };
     let artifacts = store.give_up(least, |digests| find_named(database, digests)).await?;
-    Ok(GivenUp { submissions, artifacts })
+    Ok(RemovalCounts { submissions, artifacts })
 }
 
 async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbError> {
@@ -65,7 +65,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
         let statement = "SELECT id, created_at FROM submission
             WHERE removed_at IS NULL AND created_at <= {now} - ? AND (created_at, id) > (?, ?)
             ORDER BY created_at, id LIMIT ?";
-        let found = transaction.rows(statement, values![keep, after, id, BATCH]).await?;
+        let found = transaction.rows(statement, values![keep, after, id, BATCH_SIZE]).await?;
         drop(transaction);
         let Some(last) = found.last() else { break };
         (after, id) = (last.int("created_at")?, last.int("id")?);
@@ -98,7 +98,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
 /// Returns the digests that the database still references.
 async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
-    let suites = suites(&mut transaction).await?;
+    let suites = used_suites(&mut transaction).await?;
     let wanted = serde_json::to_string(&digests).unwrap_or_default();
     let statement = "SELECT wanted.value AS digest FROM {each}
         WHERE EXISTS (SELECT 1 FROM submission
@@ -123,7 +123,7 @@ async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet
 }
 
 /// Returns the archives of suites that settings or unfinished jobs reference.
-async fn suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
+async fn used_suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
     let statement = "SELECT settings AS words FROM assignment UNION SELECT settings FROM campaign
         UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job
            WHERE state IN ('waiting', 'running') AND {strpos}(payload, '\"archive\":\"') > 0";

@@ -79,7 +79,7 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
-    let shown = report.as_ref().map_or_else(|| Some(nothing()), shown_grade);
+    let shown = report.as_ref().map_or_else(|| Some(empty_grade()), shown_grade);
     Ok(KeptTexts {
         shown: shown.as_ref().map(text).unwrap_or_default(),
         failed: report.as_ref().map(list_failed),
@@ -119,7 +119,7 @@ fn text(shown: &ShownGrade) -> String {
 }
 
 /// Returns a grade without any shown group.
-fn nothing() -> ShownGrade {
+fn empty_grade() -> ShownGrade {
     ShownGrade {
         verdict: "graded".to_owned(),
         code: "NR".to_owned(),
@@ -143,7 +143,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let rank =
         |scene: &&SceneInFile| VERDICTS.iter().position(|verdict| scene.code == verdict.0).unwrap_or(VERDICTS.len());
     let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
-    let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(nothing()) };
+    let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(empty_grade()) };
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
         let numbers: Option<Vec<f64>> = visible.iter().filter(|group| !group.extra).map(|group| of(group)).collect();
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
@@ -164,7 +164,7 @@ impl ShownGrade {
     pub fn read(text: &str) -> Option<Self> {
         match text {
             "" => None,
-            text => Some(serde_json::from_str(text).unwrap_or_else(|_| nothing())),
+            text => Some(serde_json::from_str(text).unwrap_or_else(|_| empty_grade())),
         }
     }
 
@@ -188,7 +188,7 @@ impl ShownGrade {
 }
 
 /// Returns a time, rounded down to the hour: a grade's exact time would reveal how long hidden groups took.
-pub fn hour(milliseconds: i64) -> i64 {
+pub fn round_to_hour(milliseconds: i64) -> i64 {
     milliseconds - milliseconds.rem_euclid(3_600_000)
 }
 
@@ -243,7 +243,7 @@ mod tests {
         assert_eq!((one.points.as_deref(), one.max_points.as_deref()), (Some("7.5"), Some("10.0")));
         assert!(one.summary.starts_with("1 of 2 scenes accepted"), "{}", one.summary);
         assert_eq!(ShownGrade::read(&text(&one)), Some(one));
-        assert_eq!(shown(&hidden("AC", 90)), Some(nothing()));
+        assert_eq!(shown(&hidden("AC", 90)), Some(empty_grade()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
         assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");

@@ -17,10 +17,10 @@ use std::{
 use tokio::sync::Mutex;
 
 /// The time for which a check counts, so that frequent requests of monitors cost only one write.
-const PROOF_COUNTS: Duration = Duration::from_secs(2);
+const CHECK_LIFETIME: Duration = Duration::from_secs(2);
 
 /// The maximum duration of a check; probes wait for five seconds.
-const PROOF_TIME: Duration = Duration::from_secs(3);
+const CHECK_TIMEOUT: Duration = Duration::from_secs(3);
 
 /// The database, the store and the disk, for checks that they can be written.
 #[derive(Debug)]
@@ -47,13 +47,13 @@ impl Storage {
     ///
     /// When one can't: 503, with the part.
     pub async fn prove(&self) -> Result<(), Problem> {
-        let proved = tokio::time::timeout(PROOF_TIME, self.prove_now()).await;
+        let proved = tokio::time::timeout(CHECK_TIMEOUT, self.prove_now()).await;
         proved.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
     }
 
     async fn prove_now(&self) -> Result<(), Problem> {
         let mut last = self.last.lock().await;
-        let known = last.filter(|(at, _)| at.elapsed() < PROOF_COUNTS);
+        let known = last.filter(|(at, _)| at.elapsed() < CHECK_LIFETIME);
         let fault = match known {
             Some((_, fault)) => fault,
             None => {

@@ -27,15 +27,15 @@ use tokio_util::io::ReaderStream;
 use utoipa::ToSchema;
 
 /// The number of bytes that are read at a time.
-const CHUNK: usize = 256 * 1024;
+const CHUNK_BYTES: usize = 256 * 1024;
 
 /// The folder of artifacts.
-const KEPT: &str = "sha256";
-const ASIDE: &str = "aside";
+const KEPT_FOLDER: &str = "sha256";
+const TRASH: &str = "aside";
 
 /// The age above which an artifact is written again if it is stored again. The removal of unreferenced artifacts checks
 /// their age, and must not take one that gets a reference soon.
-const FRESH: Duration = Duration::from_secs(6 * 3600);
+const FRESH_AGE: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -182,7 +182,7 @@ impl Store {
     ///
     /// When the store fails.
     pub async fn prove(&self) -> Result<(), StoreError> {
-        let key = Key::from(format!("{ASIDE}/proof-{}", std::process::id()));
+        let key = Key::from(format!("{TRASH}/proof-{}", std::process::id()));
         self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
         self.objects.delete(&key).await?;
         Ok(())
@@ -200,7 +200,7 @@ impl Store {
         }
         let (mut pieces, mut hasher) = (pieces(file).await?, Sha256::new());
         // An incomplete upload is never visible under its name.
-        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artifact.digest.key(KEPT)).await?);
+        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artifact.digest.key(KEPT_FOLDER)).await?);
         while let Some(piece) = pieces.try_next().await? {
             hasher.update(&piece);
             upload.wait_for_capacity(4).await?;
@@ -220,12 +220,12 @@ impl Store {
     ///
     /// When the store fails.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT)).await?.is_some() || self.age(&digest.key(ASIDE)).await?.is_some())
+        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH)).await?.is_some())
     }
 
     /// Returns whether there is an artifact that will not be removed soon.
     async fn find_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT)).await?.is_some_and(|age| age < FRESH))
+        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE))
     }
 
     /// Returns the age of an object; `None` if it does not exist.
@@ -259,5 +259,5 @@ pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
 
 /// Returns a file in pieces, so that it is never completely in memory.
 async fn pieces(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
-    Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK))
+    Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK_BYTES))
 }

@@ -1,5 +1,5 @@
 //! Arguments of the commands that draw or show details.
-use super::values::at_least_one;
+use super::values::parse_positive;
 use crate::render::Size;
 use clap::{Args, ValueEnum};
 use std::{num::NonZeroU32, path::PathBuf};
@@ -49,7 +49,7 @@ pub(in crate::cli) struct RenderArguments {
     #[arg(long, value_name = "N", default_value_t = 25)]
     pub(in crate::cli) fps: u16,
     /// Draw only every Nth step.
-    #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroU32>)]
+    #[arg(long, value_name = "N", value_parser = parse_positive::<NonZeroU32>)]
     pub(in crate::cli) every: Option<NonZeroU32>,
     /// Draw one picture: the state after this step; 0 is the start.
     #[arg(long, value_name = "N", conflicts_with = "every")]

@@ -1,5 +1,5 @@
 //! Arguments of the commands that run programs.
-use super::values::{TextOrJson, at_least_one, hints, reader, rules};
+use super::values::{TextOrJson, hints, parse_positive, reader, rules};
 use crate::{
     assignments::Assignment,
     judge::Rules,
@@ -11,20 +11,20 @@ use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
 /// Returns the help of `--format` for the accepted formats.
 fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
-    format!("A report: {}; with =FILE into a file", Format::names(takes))
+    format!("A report: {}; with =FILE, written to a file", Format::names(takes))
 }
 
 /// Returns the names of the built-in suites, as text.
-fn built_in() -> String {
+fn list_built_in() -> String {
     plan::built_in_names().collect::<Vec<_>>().join(", ")
 }
 
 fn help_of_suite() -> String {
-    format!("The suite: a file, or one that comes with the program ({})", built_in())
+    format!("The suite: a file, or a built-in one ({})", list_built_in())
 }
 
 fn help_of_built_in() -> String {
-    format!("A suite that comes with the program ({}), instead of the commented template", built_in())
+    format!("A built-in suite ({}), instead of the commented template", list_built_in())
 }
 
 #[derive(Debug, Args)]
@@ -67,7 +67,7 @@ pub(in crate::cli) struct GradeArguments {
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
     /// The number of parallel runs. One per core by default.
-    #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
+    #[arg(short, long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
     pub(in crate::cli) jobs: Option<NonZeroUsize>,
     /// Run only scenes with these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
     #[arg(long, value_name = "GLOB")]
@@ -147,7 +147,7 @@ pub(in crate::cli) struct GradeArguments {
 }
 
 /// The maximum number of shards of a grading.
-pub(in crate::cli) const MOST_SHARDS: usize = 10_000;
+pub(in crate::cli) const MAX_SHARDS: usize = 10_000;
 
 /// A part of the submissions: number `number` of `total`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -164,9 +164,7 @@ impl FromStr for ShardArgument {
     fn from_str(word: &str) -> Result<Self, Self::Err> {
         let parts = word.split_once('/').and_then(|(number, total)| Some((number.parse().ok()?, total.parse().ok()?)));
         match parts {
-            Some((number, total)) if (1..=total).contains(&number) && total <= MOST_SHARDS => {
-                Ok(Self { number, total })
-            }
+            Some((number, total)) if (1..=total).contains(&number) && total <= MAX_SHARDS => Ok(Self { number, total }),
             _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N, and N is 10000 at most"),
         }
     }

@@ -11,7 +11,7 @@ use draw::{DetectArguments, RenderArguments};
 use grade::{DemoArguments, DoctorArguments, GradeArguments, MergeArguments, SelftestArguments, SuiteCommand};
 use scenes::SceneCommand;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
-use values::{TextOrJson, assignment, at_least_one, explaining, reader, rules};
+use values::{TextOrJson, assignment, explanation_hints, parse_positive, reader, rules};
 
 /// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
 #[derive(Debug, Parser)]
@@ -193,7 +193,7 @@ pub(super) struct CheckArguments {
     #[arg(long)]
     pub(super) no_explain: bool,
     /// The number of threads, at most eight; the report does not depend on it. One per core by default.
-    #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
+    #[arg(long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
     pub(super) threads: Option<NonZeroUsize>,
     /// Search all roots, even if a certificate excludes an impact, and count disagreements.
     #[arg(long)]
@@ -231,7 +231,7 @@ pub(super) struct ExplainArguments {
     )]
     pub(super) suite: Option<Assignment>,
     /// The level of detail of the explanation.
-    #[arg(long, value_parser = explaining(), default_value = "full")]
+    #[arg(long, value_parser = explanation_hints(), default_value = "full")]
     pub(super) hints: Hints,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]

@@ -7,7 +7,7 @@ use clap::{
 use std::str::FromStr;
 
 /// Parses a number of at least one.
-pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
+pub(in crate::cli) fn parse_positive<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
 }
 
@@ -24,7 +24,7 @@ pub(in crate::cli) enum TextOrJson {
 type Word<T> = (&'static str, T, &'static str);
 
 /// Returns a parser for one of several words.
-fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
+fn word_parser<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(words.iter().map(|(word, _, help)| PossibleValue::new(*word).help(*help))).try_map(
         |found| words.iter().find(|(word, ..)| *word == found).map(|(_, value, _)| *value).ok_or("no such word"),
     )
@@ -32,12 +32,12 @@ fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl Ty
 
 /// Returns the parser for the rule books.
 pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
-    one_of(&[
+    word_parser(&[
         ("parity", Rules::Parity, "The original's rules alone"),
         (
             "fair",
             Rules::Fair,
-            "The fair rules give the verdict: round-off, scale and the course's own slip can't change it",
+            "The fair rules give the verdict, which is independent of round-off, scale and the course's slip",
         ),
         (
             "both",
@@ -49,17 +49,17 @@ pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
 
 /// Returns the parser for the hints of reports.
 pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
-    one_of(&[
+    word_parser(&[
         ("none", Hints::None, "The verdict only"),
-        ("where", Hints::Where, "Where the first difference is"),
+        ("where", Hints::Where, "The place of the first difference"),
         ("what", Hints::What, "Also the likely mistake, in a sentence"),
-        ("full", Hints::Full, "Everything, formulas and values included"),
+        ("full", Hints::Full, "Everything, including formulas and values"),
     ])
 }
 
 /// Returns the parser for the hints of an explanation, which show at least the likely mistake.
-pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
-    one_of(&[
+pub(in crate::cli) fn explanation_hints() -> impl TypedValueParser<Value = Hints> {
+    word_parser(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),
         ("full", Hints::Full, "Also the exact terms and an example: this may give the right formula away"),
     ])
@@ -73,8 +73,8 @@ pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> 
 
 /// Returns the parser for the reader of a page.
 pub(in crate::cli) fn reader() -> impl TypedValueParser<Value = Audience> {
-    one_of(&[
+    word_parser(&[
         ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),
-        ("student", Audience::Student, "The student: what the suite's hints and its visible groups show"),
+        ("student", Audience::Student, "The student: the visible groups, as far as the suite's hints allow"),
     ])
 }

@@ -13,7 +13,7 @@ use crate::{
     },
     report::{
         self,
-        check::{StepChoice, WrongSteps, is_wrong, no_verdict, not_read},
+        check::{StepChoice, WrongSteps, describe_no_verdict, describe_unread, is_wrong},
         number::format_count,
         page,
         style::Style,
@@ -32,7 +32,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
     // An output that can't be written is reported before the work is done.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
-    let (shown, lasts) = (ShownParts::from_arguments(arguments), is_lasting(name));
+    let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.steps());
     let (options, heard) = (options(arguments), &mut BothObservers(&mut bar, &mut wrong));
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         console::remark(format!("{}\n", words::STATES_ONLY));
     }
     let evidence = || evidence_of(&examined, name, lasts);
-    write(target, arguments.format, check, &examined, &evidence)?;
+    write_report(target, arguments.format, check, &examined, &evidence)?;
     let disagreements = outcome.searches.disagreements;
     if disagreements > 0 {
         bail!("{disagreements} disagreements between certificates and the root finder; please report this");
@@ -67,7 +67,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
 }
 
 /// Writes the report in the requested format.
-fn write(
+fn write_report(
     target: Option<Output>,
     format: CheckFormat,
     check: report::check::Check<'_>,
@@ -136,14 +136,14 @@ fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSt
 
 /// Returns an error if the scene has no verdicts, or the trace could not be read to its end.
 fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
-    if let Some(why) = no_verdict(outcome, &scene.name) {
+    if let Some(why) = describe_no_verdict(outcome, &scene.name) {
         bail!(why);
     }
     match (&outcome.stop, trace.failure()) {
         // It is unknown whether further steps were read by then, so their faults are not used.
         (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
         // Missing bytes within polynomials do not stop the original, but may be missing only in this copy.
-        (_, Some(message)) => bail!(not_read(outcome, &trace.name, &message)),
+        (_, Some(message)) => bail!(describe_unread(outcome, &trace.name, &message)),
     }
 }
 
@@ -154,6 +154,6 @@ fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Eviden
 }
 
 /// Returns whether a trace can be read a second time, so that it need not be kept during judging.
-fn is_lasting(name: &Path) -> bool {
+fn is_rereadable(name: &Path) -> bool {
     name != Path::new("-") && !std::fs::metadata(name).is_ok_and(|data| !data.is_file())
 }

@@ -13,7 +13,7 @@ use std::path::Path;
 const FILE: &str = "grades.jsonl";
 
 /// The maximum size of the file, in bytes; 10,000 submissions of 120 wrong scenes need less.
-const LARGEST: u64 = 4 << 30;
+const MAX_BYTES: u64 = 4 << 30;
 
 /// The document that `--format json` writes.
 #[derive(Deserialize)]
@@ -29,14 +29,14 @@ struct GradesFile {
 pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     let file = if place.is_dir() { Place::new(place, FILE) } else { Place::new("", place) };
     let shown = input::printable_name(&file.path()).to_string();
-    let text = file.read(LARGEST).with_context(|| format!("cannot read the earlier grading {shown}"))?;
+    let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
         Ok(GradesFile { grades }) => grades,
         // Lines without groups are entries that were not submissions.
         Err(_) => text.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect(),
     };
     if grades.is_empty() {
-        bail!("{shown} holds no grades: give --compare an output folder, its {FILE}, or what --format json wrote");
+        bail!("{shown} holds no grades: give --compare an output folder, its {FILE}, or the output of --format json");
     }
     Ok(grades)
 }
@@ -54,6 +54,6 @@ pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
         let new = format_count(new.len() as u64, "submission");
-        console::remark(format!("{new} without an earlier grade; the first is {}\n", plain(first)));
+        console::remark(format!("{new} have no earlier grade, for example {}\n", plain(first)));
     }
 }

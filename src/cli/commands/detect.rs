@@ -23,7 +23,7 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::path::Path;
 
-const NO_ANSWER: &str = "there is no answer: the numbers are too large or too small, and the original hangs here";
+const NO_ANSWER: &str = "there is no answer: the numbers are too large or too small, and the original never ends";
 
 pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
     match &arguments.scene {
@@ -38,7 +38,7 @@ fn study(motion: &PairMotion) -> Result<Study> {
 
 fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
     let report = Report { study, place };
-    write(arguments, inputs, |style| match arguments.format {
+    write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Text => report.text(style),
         DetectFormat::Json => report.json(),
         DetectFormat::Svg => detection::picture(study, &report.title(), Embedding::Alone),
@@ -53,14 +53,14 @@ fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity])
     if arguments.pass > 1 {
         bail!("step {} has 1 detection pass; there is no pass {}", report.step, arguments.pass);
     }
-    write(arguments, inputs, |style| match arguments.format {
+    write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Json => report.json(),
         _ => report.text(style),
     })
 }
 
 /// Writes a report to the requested output.
-fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
+fn write_output(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
     let text = text(if target.is_some() { Style::Plain } else { console::style() });
     match target {
@@ -72,9 +72,9 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
 
 /// Returns the pair from the typed numbers.
 fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
-    const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
+    const NO_PAIR: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
                            a scene (--scene, --step, --pair)";
-    let word = arguments.word.as_deref().context(NOTHING)?;
+    let word = arguments.word.as_deref().context(NO_PAIR)?;
     pair::motion(word, arguments.radii.as_deref())
 }
 

@@ -6,7 +6,7 @@ use crate::{
 };
 
 /// The maximum number of scenes and mistakes that are shown of a class; class.txt has all.
-pub(super) const HARDEST: usize = 5;
+pub(super) const MAX_HARDEST: usize = 5;
 
 /// Returns the exit code of a grading that was not stopped.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {

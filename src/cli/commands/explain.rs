@@ -17,7 +17,7 @@ use crate::{
         page::{Card, ExplainedPage},
         style::Style,
     },
-    suite::smallest::QUICK,
+    suite::smallest::QUICK_LIMITS,
 };
 use anyhow::{Result, bail};
 use std::{
@@ -62,11 +62,11 @@ fn explain_program(
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
     let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
     if let Some(explained) = &mut explained {
-        shrink::add_smallest(&program, explained, QUICK, &|_| true, None, drawing(arguments))?;
+        shrink::add_smallest(&program, explained, QUICK_LIMITS, &|_| true, None, drawing(arguments))?;
     }
     let is_traceless = |(_, steps): &(_, u32)| *steps == 0;
     if suite.is_some() && explained.as_ref().is_some_and(|all| all.ends.iter().all(is_traceless)) {
-        console::remark("if this program is of another milestone: without --suite that is found out\n");
+        console::remark("if the program is of another milestone, leave out --suite: the milestone is then inferred\n");
     }
     Ok(explained)
 }

@@ -3,7 +3,7 @@ use super::{
     closer::Closer,
     compare,
     display::{Counter, LiveDisplay},
-    ending::{HARDEST, exit_code, file_name, file_of_scene, text, text_detail},
+    ending::{MAX_HARDEST, exit_code, file_name, file_of_scene, text, text_detail},
     host::backend,
     last_run::LastRun,
     pages::{self, Pages},
@@ -59,7 +59,7 @@ use std::{
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
 
 /// The folder for traces on which the grader failed, if there is no folder for results.
-const FAULTS: &str = "fosssim-faults";
+const FAULTS_FOLDER: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let times = Timings::default();
@@ -77,7 +77,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         plan.rules = rules;
     }
     if arguments.recorded && arguments.rules == Some(Rules::Fair) {
-        bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
+        bail!("the fair rules follow the submission and can't judge against recordings; leave out --recorded");
     }
     match (arguments.hints, arguments.reader) {
         (None, _) => {}
@@ -122,7 +122,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let failed = match (arguments.failed, last_run.failed_scenes()) {
         (false, _) => None,
         (true, Some(failed)) => Some(failed),
-        (true, None) => bail!("no earlier run of this is known: run the same command without --failed first"),
+        (true, None) => bail!("there is no earlier run of this grading; run the same command without --failed first"),
     };
     plan = plan.part(|scene| selection.takes(scene) && failed.as_ref().is_none_or(|failed| failed.contains(scene)));
     if arguments.failed {
@@ -193,7 +193,7 @@ impl GradingSession<'_> {
         if let Some(folder) = &self.folder {
             if taken > 0 {
                 let (folder, all) = (folder.display(), format_count(all as u64, "result"));
-                console::complain(format!("{taken} of {all} taken over from {folder} (--fresh grades all again)\n"));
+                console::complain(format!("reused {taken} of {all} from {folder} (--fresh regrades everything)\n"));
             }
             if self.cancellation.is_cancelled() {
                 let folder = folder.display();
@@ -225,14 +225,14 @@ impl GradingSession<'_> {
             recorded: self.arguments.recorded,
         };
         let faults =
-            self.folder.as_deref().map_or_else(|| Place::new("", FAULTS), |folder| Place::new(folder, "faults"));
+            self.folder.as_deref().map_or_else(|| Place::new("", FAULTS_FOLDER), |folder| Place::new(folder, "faults"));
         let trace = |submission: &Submission, scene: &SceneTask| {
             self.trace(&submission.name, &scene.name).unwrap_or_else(|| faults.clone())
         };
         if let (Some(pages), true) = (&self.pages, fresh) {
             pages.forget();
         }
-        let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
+        let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, self.arguments.recorded);
         let program = format!("./{}", self.arguments.program);
         let smallest = |small: &ShrunkScene, students: Hints| {
             let hints = [self.plan.staff_hints, students];
@@ -275,7 +275,7 @@ impl GradingSession<'_> {
         let BatchResult { mut grades, fault } =
             batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
-        grade::warn_of(&mut grades, self.passed_over());
+        grade::add_warnings(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
     }
 
@@ -314,7 +314,7 @@ impl GradingSession<'_> {
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
-        text(grades, self.passed_over(), shown, HARDEST, Some(&closer))
+        text(grades, self.passed_over(), shown, MAX_HARDEST, Some(&closer))
     }
 
     /// Grades whenever a program changes, until interrupted.
@@ -327,7 +327,7 @@ impl GradingSession<'_> {
     ) -> Result<u8> {
         let mut earlier = earlier;
         loop {
-            let seen = stamps(submissions);
+            let seen = change_stamps(submissions);
             let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
             if self.cancellation.is_cancelled() {
                 return Ok(code);
@@ -341,7 +341,7 @@ impl GradingSession<'_> {
                 if self.cancellation.is_cancelled() {
                     return Ok(exit::INTERRUPTED);
                 }
-                let now = stamps(submissions);
+                let now = change_stamps(submissions);
                 if now == last && now != seen && now.iter().all(Option::is_some) {
                     break;
                 }
@@ -352,7 +352,7 @@ impl GradingSession<'_> {
 }
 
 /// Returns the newest modification time below each submission, and its size, to detect changes.
-fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
+fn change_stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),
         None => submission.path.clone(),
@@ -385,7 +385,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let never_ran = |verdict| matches!(verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError);
     for scene in grade.scenes().filter(|scene| !never_ran(scene.verdict)) {
         text += &format!("\n=== {} ===\n{}: {}\n", plain(&scene.scene), scene.verdict, plain(&words::summary(scene)));
-        let details = grade::difference(scene).into_iter().chain(words::details(scene));
+        let details = grade::describe_difference(scene).into_iter().chain(words::details(scene));
         text.extend(
             details.chain(explain::lines(&scene.settled, Style::Plain)).map(|line| format!("{}\n", plain(&line))),
         );

@@ -12,10 +12,10 @@ use std::{
 };
 
 /// The name of the file in an output folder.
-const FILE: &str = "last-run.json";
+const LAST_RUN_FILE: &str = "last-run.json";
 
 /// The maximum size of the file, in bytes: four times that of 10,000 submissions of 85 scenes.
-const LARGEST: u64 = 256 << 20;
+const MAX_BYTES: u64 = 256 << 20;
 
 /// For each submission and scene, whether it was accepted.
 type AcceptedScenes = BTreeMap<String, BTreeMap<String, bool>>;
@@ -30,7 +30,7 @@ pub(super) struct LastRun {
 impl LastRun {
     /// Reads the verdicts of the given submissions on a suite.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
-        let file = folder.map(|folder| Place::new(folder, FILE)).or_else(|| {
+        let file = folder.map(|folder| Place::new(folder, LAST_RUN_FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();
             for submission in submissions {
                 let path = std::path::absolute(&submission.path).unwrap_or_else(|_| submission.path.clone());
@@ -38,9 +38,9 @@ impl LastRun {
                 hasher.update(submission.name.as_bytes()).update(b"\0");
             }
             let name = hasher.update(suite.as_bytes()).finalize().to_hex();
-            Some(Place::new(cache()?, format!("last-run/{}.json", &name[..16])))
+            Some(Place::new(cache_folder()?, format!("last-run/{}.json", &name[..16])))
         });
-        let text = file.as_ref().and_then(|file| file.read(LARGEST).ok()).unwrap_or_default();
+        let text = file.as_ref().and_then(|file| file.read(MAX_BYTES).ok()).unwrap_or_default();
         Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
     }
 
@@ -74,7 +74,7 @@ impl LastRun {
 }
 
 /// Returns the folder for this program in the user's cache.
-fn cache() -> Option<PathBuf> {
+fn cache_folder() -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;
     Some(cache.join("fosssim-oracle"))

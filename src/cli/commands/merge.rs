@@ -15,7 +15,7 @@ use crate::{
     },
     suite::{
         Grade,
-        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Results as _, for_each_line, read_line},
+        results::{FolderResults, JOURNAL, MAX_JOURNAL_BYTES, Results as _, for_each_line, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -26,13 +26,13 @@ use std::{
 };
 
 /// The folders of a grading whose files have unique names, or that of their submission.
-const FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
+const COPIED_FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
 
 /// The maximum depth of folders that are copied.
-const DEEPEST: usize = 4;
+const MAX_DEPTH: usize = 4;
 
 /// The maximum size of a file that a grading writes, in bytes.
-const LARGEST_FILE: u64 = 2 << 30;
+const MAX_FILE_BYTES: u64 = 2 << 30;
 
 pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let reports = reports(&arguments.format)?;
@@ -45,10 +45,10 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     // The lock is held to the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
-        for name in FOLDERS {
+        for name in COPIED_FOLDERS {
             let place = Place::new(folder, name);
             match place.folder() {
-                Ok(from) => copy(&from, &Place::new(&output, name), DEEPEST)?,
+                Ok(from) => copy(&from, &Place::new(&output, name), MAX_DEPTH)?,
                 Err(FileError::Missing { .. }) => {}
                 Err(error) => {
                     return Err(error).with_context(|| format!("cannot read {}", place.path().display()));
@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
     Grade::note_same_programs(&mut grades);
-    grade::warn_of(&mut grades, &passed_over);
+    grade::add_warnings(&mut grades, &passed_over);
     let pages = Pages::new(Some(&output), false)?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
     let reader = arguments.reader;
@@ -99,7 +99,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
             }
         }
         if parts.len() == before {
-            bail!("{} holds no shard that is done: grade --shard leaves shard.json when it ends", folder.display());
+            bail!("{} has no complete shard: grade --shard writes shard.json at its end", folder.display());
         }
     }
     Ok(parts)
@@ -134,7 +134,7 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
         match found.len() {
             0 => missing.push(number.to_string()),
             1 => {}
-            _ => bail!("shard {number} of {of} is there more than once: {}", found.join(" and ")),
+            _ => bail!("shard {number} of {of} exists more than once: {}", found.join(" and ")),
         }
     }
     if !missing.is_empty() {
@@ -148,10 +148,10 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
     let output = match (&arguments.output, arguments.folders.as_slice()) {
         (Some(output), _) => output.clone(),
         (None, [folder]) if parts.iter().all(|(place, _)| place != folder) => folder.clone(),
-        _ => bail!("say where the results go: --output DIR"),
+        _ => bail!("choose a folder for the results with --output DIR"),
     };
     if parts.iter().any(|(place, _)| *place == output) {
-        bail!("{} is a shard's own folder: give another --output", output.display());
+        bail!("{} is a shard's folder; choose another --output", output.display());
     }
     Ok((first, output))
 }
@@ -159,7 +159,7 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
 /// Stores a shard's results in the merged folder, so that a later grading without shards finds them.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     let place = Place::new(folder, JOURNAL);
-    let (file, length) = match place.file(LARGEST_JOURNAL) {
+    let (file, length) = match place.file(MAX_JOURNAL_BYTES) {
         Ok(opened) => opened,
         // A shard without submissions has no journal.
         Err(FileError::Missing { .. }) => return Ok(()),
@@ -186,7 +186,7 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::complain(format!("passed over {}: it is not a file\n", input::printable_name(&source)));
+                console::complain(format!("skipped {}: it is not a file\n", input::printable_name(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }
@@ -196,8 +196,8 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
 
 fn copy_file(file: File, target: &Place) -> io::Result<()> {
     let length = file.metadata()?.len();
-    if length > LARGEST_FILE {
-        return Err(io::Error::other(format!("it has {length} bytes, the limit is {LARGEST_FILE}")));
+    if length > MAX_FILE_BYTES {
+        return Err(io::Error::other(format!("it has {length} bytes, the limit is {MAX_FILE_BYTES}")));
     }
     // Stop at the length, even if the file grows.
     output::copy_at(target, &mut file.take(length))

@@ -25,7 +25,7 @@ use std::{
 
 /// The maximum number of values that are kept of a graded scene's motion, because several scenes are graded in
 /// parallel. The largest course scene has 70,444.
-const BUDGET: usize = 1 << 19;
+const MAX_MOTION_VALUES: usize = 1 << 19;
 
 /// The cards of a grading, and the folder for its pages.
 pub(super) struct Pages {
@@ -51,7 +51,7 @@ impl Pages {
         Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
     }
 
-    /// Returns cards that `draw` draws and this folder stores.
+    /// Returns cards that `draw_card` draws and this folder stores.
     pub(super) fn drawing<'a>(&'a self, draw: &'a Draw<'a>) -> Cards<'a> {
         Cards { folder: &self.cards, draw, for_students: self.for_students }
     }
@@ -67,12 +67,12 @@ impl Pages {
 
     /// Returns the stored card with a name.
     pub(super) fn card(&self, name: Option<&str>) -> Option<Card> {
-        Card::from_kept(&cards::read(&self.cards, name?)?)
+        Card::from_stored(&cards::read(&self.cards, name?)?)
     }
 
     /// Stores a card; returns its name. If a card can't be stored, only the picture is missing.
     pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
-        cards::store(&self.cards, &card?.to_kept()).ok()
+        cards::store(&self.cards, &card?.to_stored()).ok()
     }
 
     /// Returns the page of one submission.
@@ -114,12 +114,12 @@ impl Pages {
 
 /// The sentence above the card of a trace that was judged against a recording.
 const RECORDED: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
-                        differs. What follows judges each step from the trace's own state before it: what is wrong by \
-                        itself, and what only follows from that.";
+                        differs. The steps below are judged from the trace's own state before each step, to show \
+                        which ones are wrong by themselves, and which only follow from others.";
 
 /// Draws the card of a graded scene. If the trace was judged against a recording, each step is judged again from the
 /// trace's own state.
-pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
+pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;
     }
@@ -131,15 +131,15 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
         // A failure of drawing must not cost points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
-        return draw(&own, false)
-            .map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).to_kept()));
+        return draw_card(&own, false)
+            .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(RECORDED).to_stored()));
     }
     // A failure of drawing must not cost points.
     let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
         Some(Card::from_words(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
-    let cut = "The trace is longer than what the grader keeps of it: the pictures end where that ends.";
-    card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.to_kept())
+    let cut = "The trace is longer than the part that the grader keeps, so the pictures end early.";
+    card.map(|card| if judged.is_cut { card.with_remark(cut) } else { card }.to_stored())
 }
 
 /// Returns the card of a judged trace. `trace_name` is the trace's name for the reader, and `depth` is the level of the
@@ -147,7 +147,7 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
 pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
     let JudgedTrace { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));
-    let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
+    let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, MAX_MOTION_VALUES);
     let what_if = match (hints, explanations.first()) {
         (Hints::Full, Some(first)) => WhatIf::for_scene(scene, first, (!is_cut).then_some(trace), &evidence),
         _ => None,

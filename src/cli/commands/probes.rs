@@ -37,10 +37,10 @@ use std::{
 };
 
 /// The limits of processor time and wall time on scenes that take a right program some milliseconds.
-const PATIENT: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
+const TIME_LIMITS: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
 /// The maximum number of runs that end at a limit; further scenes would show the same.
-const MOST_STOPPED: usize = 4;
+const MAX_STOPPED: usize = 4;
 
 /// The hints of cards, and whether pictures are drawn.
 #[derive(Debug, Clone, Copy)]
@@ -89,7 +89,7 @@ impl ProgramUnderTest {
         if suite.is_some() {
             ready.assignment = ready.plan.assignment();
         } else {
-            ready.assignment = own_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
+            ready.assignment = infer_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
             ready.suite = ready.assignment.key().to_owned();
             ready.plan = plan::find(&ready.suite)?;
         }
@@ -118,7 +118,7 @@ impl ProgramUnderTest {
     /// Returns the suite's limits, or shorter ones for scenes that take a right program some milliseconds.
     pub(super) fn limits(&self) -> RunLimits {
         let limits = self.plan.limits;
-        RunLimits { cpu: limits.cpu.min(PATIENT[0]), wall: limits.wall.min(PATIENT[1]), ..limits }
+        RunLimits { cpu: limits.cpu.min(TIME_LIMITS[0]), wall: limits.wall.min(TIME_LIMITS[1]), ..limits }
     }
 
     /// Returns the scenes to run: the milestone's probe scenes, the suite's scenes if they show more, and the named
@@ -148,7 +148,7 @@ impl ProgramUnderTest {
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
         for task in &tasks {
-            if stopped >= MOST_STOPPED {
+            if stopped >= MAX_STOPPED {
                 break;
             }
             bar.next_run(&task.name);
@@ -177,8 +177,8 @@ impl ProgramUnderTest {
         if left_out > 0 {
             let scenes = format_count(left_out as u64, "scene");
             console::remark(format!(
-                "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more: look for \
-                 the loop that does not end\n"
+                "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more; look for a \
+                 loop that does not end\n"
             ));
         }
         let (common, refuted) = find_likely(self.assignment, &cases, &tasks);
@@ -266,7 +266,7 @@ pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<
 }
 
 /// Infers the milestone of a program, and reports it if it is not the default.
-fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
+fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     let found = milestone::looks_like(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
     if found != Assignment::DEFAULT {
         let Definition { title, key, .. } = found.definition();

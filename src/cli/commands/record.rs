@@ -14,7 +14,7 @@ use anyhow::{Context, Result, bail};
 use std::{io, path::Path};
 
 /// The maximum size of a recording, in bytes.
-const LARGEST_RECORDING: u64 = 1 << 30;
+const MAX_RECORDING_BYTES: u64 = 1 << 30;
 
 pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
     // A folder that was given is used even if it does not exist.
@@ -50,7 +50,7 @@ fn list_bundled() -> Vec<Input> {
 fn scenes(folder: &Path) -> Result<Vec<Input>> {
     let shown = folder.display();
     let files = scene_files::list(folder, ".xml").with_context(|| {
-        format!("cannot read the scenes in {shown}; run this in the checkout, or name a folder with --assets")
+        format!("cannot read the scenes in {shown}; run this command in the checkout, or choose a folder with --assets")
     })?;
     if files.is_empty() {
         bail!("there is no scene in {shown}; scenes are called {shown}/<Group>/<name>.xml");
@@ -75,7 +75,7 @@ struct EarlierRecordings<'a>(Option<&'a Path>);
 impl EarlierRecordings<'_> {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
         let Some(folder) = self.0 else { return Ok(library::reference(path).map(<[u8]>::to_vec)) };
-        match Place::new(folder, path).read(LARGEST_RECORDING) {
+        match Place::new(folder, path).read(MAX_RECORDING_BYTES) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(FileError::Missing { .. }) => Ok(None),
             Err(error) => Err(io::Error::other(error)),
@@ -112,7 +112,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
         return Ok(exit::ACCEPTED);
     }
     console::print(&text)?;
-    console::remark("the recordings differ; if that is meant, run `fosssim-oracle record` and look at the change\n");
+    console::remark("the recordings differ; if this is intended, run `fosssim-oracle record` and check the change\n");
     Ok(exit::NOT_ACCEPTED)
 }
 

@@ -40,7 +40,7 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
         };
         let Some(format) = Format::from_name(name) else {
             let known: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
-            bail!("no format {name}; there are {}{}", known.join(", "), near::meant(name, known.iter().copied()));
+            bail!("no format {name}; there are {}{}", known.join(", "), near::suggest(name, known.iter().copied()));
         };
         reports.push(Report { format, name: name.to_owned(), file });
     }
@@ -53,7 +53,7 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     let place = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
     let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(place).collect();
     if let Some((_, twice)) = files.iter().enumerate().find(|(number, file)| files[..*number].contains(file)) {
-        bail!("two formats go to one file, {}: give each its own", twice.display());
+        bail!("two formats have the same file, {}; give each its own", twice.display());
     }
     Ok(reports)
 }
@@ -67,7 +67,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
             let hint = if *format == Format::Html { of_html } else { "" };
-            bail!("--format {name} holds one submission, and there are {submissions}{hint}")
+            bail!("--format {name} is for one submission, but there are {submissions}{hint}")
         }
         None => Ok(()),
     }
@@ -124,7 +124,7 @@ impl Results<'_> {
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
-            console::complain("a part of the suite is not a grade: grades.csv and the other tables are not changed\n");
+            console::complain("only a part was graded, so grades.csv and the other tables are not changed\n");
         } else if let Some(folder) = self.folder {
             let by_submission = || grade::csv_of_submissions(grades, passed_over);
             let by_scene = || Format::Csv.render_class(grades, passed_over);
@@ -173,7 +173,7 @@ impl Results<'_> {
                 (None, _) => keep(make("the report", render).and_then(|text| console::print(text.as_bytes()))),
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
                 (Some(file), _) => {
-                    keep(write(file, render).map(|()| output::say_where(file, report.format == Format::Html)))
+                    keep(write(file, render).map(|()| output::print_path(file, report.format == Format::Html)))
                 }
             }
         }

@@ -46,7 +46,7 @@ fn show(name: &str) -> Result<()> {
     let same: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
         (Some(xml), 1) => console::print(xml),
-        _ => bail!("no scene {name} comes with the program; `fosssim-oracle scene list` lists those that do"),
+        _ => bail!("there is no built-in scene {name}; `fosssim-oracle scene list` lists all"),
     }
 }
 
@@ -72,7 +72,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     }
     if let Some(first) = other.first() {
         let more = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
-        bail!("{}{more}: left alone, because something else is in it; --force replaces it", first.display());
+        bail!("{}{more}: not overwritten, because the content differs; --force overwrites", first.display());
     }
     Ok(())
 }

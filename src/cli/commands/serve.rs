@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use std::{os::unix::process::CommandExt, process::Command};
 
 pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
-    let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
+    let server = std::env::current_exe().context("cannot find this program")?.with_file_name("fosssim-server");
     if !server.is_file() {
         bail!(
             "there is no {}: install the package fosssim-server (docs/install.md), or build it next to this program \

@@ -2,7 +2,7 @@
 //! `merge`.
 use crate::{
     cli::{
-        arguments::grade::{GradeArguments as Arguments, MOST_SHARDS, ShardArgument},
+        arguments::grade::{GradeArguments as Arguments, MAX_SHARDS, ShardArgument},
         console, output,
     },
     files::{FileError, Place},
@@ -16,10 +16,10 @@ use std::{
 };
 
 /// The name of the file that marks a shard as complete, and has its exit code.
-const FILE: &str = "shard.json";
+const SHARD_FILE: &str = "shard.json";
 
 /// The maximum size of the file, in bytes: twice that of ten thousand submissions of 85 scenes that are all wrong.
-const LARGEST: u64 = 4 << 30;
+const MAX_BYTES: u64 = 4 << 30;
 
 /// The version of the file's format.
 const SCHEMA: u32 = 1;
@@ -81,17 +81,16 @@ impl Part {
     ///
     /// When the file can't be read, or is from another version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
-        let file = folder.join(FILE);
-        let opened = match Place::new(folder, FILE).file(LARGEST) {
+        let file = folder.join(SHARD_FILE);
+        let opened = match Place::new(folder, SHARD_FILE).file(MAX_BYTES) {
             Ok((opened, length)) => opened.take(length),
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
         // Read as a stream, so that a file that is not JSON ends at its first byte, however long it is.
         let part: Self = serde_json::from_reader(BufReader::new(opened))
-            .with_context(|| format!("{} is damaged, or another version's: grade this shard again", file.display()))?;
-        part.check()
-            .with_context(|| format!("{} does not hold what it should: grade this shard again", file.display()))?;
+            .with_context(|| format!("{} is damaged, or of another version; grade this shard again", file.display()))?;
+        part.check().with_context(|| format!("{} has invalid content; grade this shard again", file.display()))?;
         Ok(Some(part))
     }
 
@@ -99,17 +98,17 @@ impl Part {
     fn check(&self) -> Result<()> {
         let common = &self.common;
         if common.schema != SCHEMA {
-            bail!("it is of schema {}, and this program reads {SCHEMA}", common.schema);
+            bail!("it has schema {}, but this program reads {SCHEMA}", common.schema);
         }
-        if !(1..=MOST_SHARDS).contains(&common.total) || !(1..=common.total).contains(&self.number) {
-            bail!("there is no shard {} of {}; there are at most {MOST_SHARDS}", self.number, common.total);
+        if !(1..=MAX_SHARDS).contains(&common.total) || !(1..=common.total).contains(&self.number) {
+            bail!("there is no shard {} of {}; there are at most {MAX_SHARDS}", self.number, common.total);
         }
         let own = select_own(self.number, common.total, &common.submissions);
         if !own.eq(self.grades.iter().map(|grade| &grade.submission)) {
-            bail!("it grades other submissions than its own");
+            bail!("it has grades of other submissions");
         }
         for grade in &self.grades {
-            if let Some(what) = score::contradiction(grade) {
+            if let Some(what) = score::find_contradiction(grade) {
                 bail!("the grade of {}: {what}", grade.submission);
             }
         }
@@ -148,7 +147,7 @@ impl Sharding {
             grader: this_build().to_owned(),
             total: shard.total,
             suite: plan.name.clone(),
-            plan: digest(plan, arguments),
+            plan: plan_digest(plan, arguments),
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
         let begun = Place::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
@@ -167,7 +166,7 @@ impl Sharding {
     /// When the folder can't be created.
     pub(super) fn begin(&self) -> Result<()> {
         self.begun.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
-        let place = Place::new(&self.folder, FILE);
+        let place = Place::new(&self.folder, SHARD_FILE);
         place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }
 
@@ -179,7 +178,7 @@ impl Sharding {
     pub(super) fn end(&self, grades: &[Grade], passed_over: &[PassedOver]) -> Result<()> {
         let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
         let part = Part { common, number, grades: grades.to_vec(), passed_over };
-        output::write_at(&Place::new(&self.folder, FILE), &serde_json::to_vec(&part)?)?;
+        output::write_at(&Place::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         console::remark(format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.total));
         Ok(())
@@ -187,7 +186,7 @@ impl Sharding {
 }
 
 /// Returns the digest of everything that results depend on, except for the programs.
-fn digest(plan: &Plan, arguments: &Arguments) -> String {
+fn plan_digest(plan: &Plan, arguments: &Arguments) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add = |bytes: &[u8]| {
         hasher.update(&(bytes.len() as u64).to_le_bytes());

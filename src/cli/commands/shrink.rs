@@ -27,7 +27,7 @@ use crate::{
     suite::{
         config::Hints,
         located::FailureKind,
-        smallest::{MOST_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient},
+        smallest::{MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient},
     },
     together::told::cut,
 };
@@ -47,9 +47,9 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
         (None, Some(scene)) => named_tasks(std::slice::from_ref(scene))?,
         (named, _) => named.unwrap_or_default(),
     };
-    tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
+    tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
     if tasks.is_empty() {
-        bail!("`shrink` needs a scene with at most {MOST_BODIES} bodies");
+        bail!("`shrink` needs a scene with at most {MAX_BODIES} bodies");
     }
     let drawing = Drawing { hints: Hints::Full, has_pictures: false };
     let Some(mut examined) = program.examine(tasks, drawing)? else { return Ok(exit::INTERRUPTED) };
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     }
     match arguments.format {
         ExplainFormat::Text if smallest.is_empty() => {
-            console::report("No smaller scene shows again what is wrong.\n")?;
+            console::report("No smaller scene reproduces the fault.\n")?;
         }
         ExplainFormat::Text => console::report(&texts.join("\n"))?,
         ExplainFormat::Json => console::print(examined.diagnosis.json())?,
@@ -159,7 +159,7 @@ fn describe(small: &ShrunkScene, program: &str, suite: &str, drawing: Drawing) -
     let ShrunkScene { reason, origin, small: SmallScene { scene, step, runs, is_minimal }, seen, .. } = small;
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
     let note =
-        note.map(|note| if scene.particles.is_empty() { format!("{note}; it needs no body for that") } else { note });
+        note.map(|note| if scene.particles.is_empty() { format!("{note}, even without any body") } else { note });
     let names = ("small.xml".to_owned(), program.to_owned());
     let (mut case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
     // A card would show two equal motions if the program does not end well and its steps are right.

@@ -16,16 +16,16 @@ use std::{
 };
 
 /// The files that mark a folder as one of results.
-const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
+const RESULT_FILES: [&str; 2] = [".lock", "journal.jsonl"];
 
 /// The names of folders in a folder of results.
-const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
+const RESULT_FOLDERS: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
 /// The reason why a folder of results is not a submission.
 const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 
 /// The maximum number of entries of a class's folder.
-const MOST_ENTRIES: usize = 100_000;
+const MAX_ENTRIES: usize = 100_000;
 
 /// The submissions of a command line, and the entries that are not submissions.
 pub(super) struct FoundSubmissions {
@@ -75,7 +75,7 @@ impl<'a> Search<'a> {
             } else if self.arguments.single {
                 found.push(self.folder(path));
             } else if self.arguments.programs.len() > 1 && self.is_results(path) {
-                pass_over(&mut passed_over, path, RESULTS_OF_A_GRADING);
+                skip_entry(&mut passed_over, path, RESULTS_OF_A_GRADING);
             } else if self.is_one(path) {
                 found.push(self.folder(path));
             } else {
@@ -83,11 +83,11 @@ impl<'a> Search<'a> {
             }
         }
         if found.is_empty() {
-            bail!("there is no submission: neither programs nor folders");
+            bail!("there is no submission: the folder has neither programs nor folders");
         }
         let paths: Vec<&Path> = found.iter().map(|entry| entry.path.as_path()).collect();
         let names = distinct_names(&paths);
-        let files = one_files(&found, &names);
+        let files = file_identities(&found, &names);
         let submissions = found.into_iter().zip(names).zip(files);
         let submissions = submissions
             .map(|((entry, name), file)| Submission { name, path: entry.folder, program: entry.program, file })
@@ -121,21 +121,21 @@ impl<'a> Search<'a> {
     /// Returns whether a folder is the one for results, or contains those of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
         let same = |one: &Path, other: &Path| matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other);
-        same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
+        same(path, self.output) || RESULT_FILES.iter().all(|name| path.join(name).is_file())
     }
 
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are reported
     /// and skipped: hidden ones, results of gradings, and links, which could lead to another's submission.
     fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
-        let paths = list_entries(folder, MOST_ENTRIES)?;
+        let paths = list_entries(folder, MAX_ENTRIES)?;
         let holds_results = self.is_results(folder);
         let before = found.len();
         for path in &paths {
             let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let why = match fs::symlink_metadata(path) {
-                _ if holds_results && OWN.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
+                _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
                 _ if path.file_name().is_some_and(fosssim_intake::is_litter) => {
-                    "a file manager or a build tool put it there".to_owned()
+                    "it is from a file manager or a build tool".to_owned()
                 }
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
                     "its name begins with a dot; name it to grade it".to_owned()
@@ -148,17 +148,17 @@ impl<'a> Search<'a> {
                 Ok(data) if data.is_symlink() => {
                     "it is a link, which may lead to another's submission; name it to grade it".to_owned()
                 }
-                Ok(data) if data.is_file() => match refusal(folder, path, &data) {
+                Ok(data) if data.is_file() => match rejection(folder, path, &data) {
                     Some(why) => why,
                     None => {
-                        found.push(entry(folder, path));
+                        found.push(program_entry(folder, path));
                         continue;
                     }
                 },
                 Ok(_) => "it is neither a file nor a folder".to_owned(),
                 Err(error) => error.to_string(),
             };
-            pass_over(passed_over, path, &why);
+            skip_entry(passed_over, path, &why);
         }
         if found.len() == before {
             bail!(
@@ -190,7 +190,7 @@ fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
 
 /// Returns the reason why a file in a class's folder is not a submission, if so. Executable files are submissions, and
 /// so are files that begin like programs or archives, because learning platforms lose permissions.
-fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
+fn rejection(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
     }
@@ -212,7 +212,7 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
 }
 
 /// Returns a program among others. It is opened below the folder, without following links.
-fn entry(folder: &Path, path: &Path) -> Entry {
+fn program_entry(folder: &Path, path: &Path) -> Entry {
     let program = path.file_name().and_then(OsStr::to_str).map(str::to_owned);
     let folder = if program.is_some() { folder } else { path };
     Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
@@ -230,7 +230,7 @@ fn refuse_scene(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
+fn skip_entry(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
     let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
     console::complain(format!("passed over {name}: {why}\n"));
     passed_over.push(PassedOver { name, why: why.to_owned() });
@@ -258,7 +258,7 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let mut name = |(path, own): (&&Path, &OsString)| {
         let shown = names::printable(own);
         let plain = match &alike[&shown] {
-            same if same[own.as_os_str()] > 1 => names::printable(end_of(path, paths).as_os_str()),
+            same if same[own.as_os_str()] > 1 => names::printable(unique_end(path, paths).as_os_str()),
             same if same.len() > 1 => names::exact(own),
             _ => shown,
         };
@@ -274,7 +274,7 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
 }
 
 /// Returns the shortest end of a path that is unique among the paths.
-fn end_of<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
+fn unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
     let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
     let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
     ends.find(is_own).unwrap_or(path)
@@ -282,7 +282,7 @@ fn end_of<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
 
 /// Returns the identity of the file behind each program. If several submissions link to one file, its owner submitted
 /// it. The owner of a submission is that of its folder, because in a class only folders have different owners.
-fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
+fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;
         let (identity, owner) = Folder::to_write(&entry.folder).ok()?.identity(OsStr::new(program))?;
@@ -296,7 +296,7 @@ fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     }
     for same in owners.values().filter(|same| same.len() > 1) {
         let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
-        console::complain(format!("one file under several names (hard links): {}\n", names.join(", ")));
+        console::complain(format!("one file with several names (hard links): {}\n", names.join(", ")));
     }
     let of = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];

@@ -21,7 +21,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
             let text = template(name.as_deref())?;
             match output {
                 Some(file) if file.is_file() => {
-                    bail!("{} exists, and may hold your changes; name another file, or remove it", file.display())
+                    bail!("{} exists, and may contain your changes; choose another file, or remove it", file.display())
                 }
                 Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
                 None => console::print(&text),
@@ -45,7 +45,7 @@ fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::template(&name).with_context(|| {
         let known: Vec<_> = plan::built_in_names().collect();
-        format!("no suite {name} comes with the program; there are {}{}", known.join(", "), plan::meant(&name))
+        format!("there is no built-in suite {name}; choose {}{}", known.join(", "), plan::suggest(&name))
     })
 }
 

@@ -1,5 +1,5 @@
 //! The text of `suite check`: the contents of a suite, and facts to know before grading. Also the list of suites.
-use super::suite_sight::{ENOUGH, SeenPart};
+use super::suite_sight::{ENOUGH_SCENES, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
     report::{
@@ -23,7 +23,7 @@ use std::{collections::BTreeSet, fmt::Write};
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
 /// The maximum number of listed decisions per scene.
-const LISTED: usize = 3;
+const MAX_LISTED: usize = 3;
 
 /// The contents of a suite's scenes, and the selected lists.
 #[derive(Debug)]
@@ -47,7 +47,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     let unknown = notes_on_unknown(plan, style);
     text += &unknown.concat();
     for (scene, found) in undecided {
-        text += &note(scene, found, style);
+        text += &describe_note(scene, found, style);
     }
     let notes = match undecided.len() + unknown.len() {
         0 => String::new(),
@@ -104,7 +104,7 @@ fn counted_points(value: f64) -> String {
 }
 
 /// Returns the meaning of the choice of rule books, as text.
-const fn rules(rules: Rules) -> &'static str {
+const fn describe_rules(rules: Rules) -> &'static str {
     match rules {
         Rules::Parity => "parity: the original's verdict counts, the fair rules are not applied",
         Rules::Fair => "fair: the fair rules' verdict counts",
@@ -113,7 +113,7 @@ const fn rules(rules: Rules) -> &'static str {
 }
 
 /// Returns the meaning of partial credit, as text.
-const fn credit(credit: Credit) -> &'static str {
+const fn describe_credit(credit: Credit) -> &'static str {
     match credit {
         Credit::Scenes => "credit per scene",
         Credit::Steps => "credit per step",
@@ -146,7 +146,7 @@ fn head(plan: &Plan, style: Style) -> String {
         limits.trace >> 20,
     );
     let _ = writeln!(text, "programs: {}", plan.assignment().definition().title);
-    let _ = writeln!(text, "rules: {}", rules(plan.rules));
+    let _ = writeln!(text, "rules: {}", describe_rules(plan.rules));
     let levels: BTreeSet<Hints> = plan.groups.iter().map(|group| group.marking.hints).collect();
     let several = levels.len() > 1;
     for level in levels {
@@ -163,7 +163,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
     let (points, visibility) = (counted_points(marking.points), key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
-    let (credit, hints) = (credit(marking.credit), marking.hints.describe().0);
+    let (credit, hints) = (describe_credit(marking.credit), marking.hints.describe().0);
     let extra = if marking.extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
@@ -187,7 +187,7 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     if coverage.is_empty() {
         return String::new();
     }
-    let title = style.paint(Look::Strong, "What happens in the scenes' steps, by pairs of properties");
+    let title = style.paint(Look::Strong, "Events in the scenes' steps, by pairs of properties");
     let mut text = format!("\n{title}\n");
     let width = FAMILIES.iter().map(|family| family.name.len()).max().unwrap_or(0);
     let (mut all_seen, mut all) = (0, 0);
@@ -209,7 +209,7 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
     }
-    let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by parts of the work");
+    let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by area");
     let mut text = format!("\n{title}\n");
     let width = parts.iter().map(|part| key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
     let (mut all_seen, mut together) = (0, 0);
@@ -220,7 +220,7 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
             let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
         }
         if !rare.is_empty() {
-            let _ = writeln!(text, "    shown by fewer than {ENOUGH} scenes: {}", rare.join(", "));
+            let _ = writeln!(text, "    shown by fewer than {ENOUGH_SCENES} scenes: {}", rare.join(", "));
         }
     }
     let _ = writeln!(text, "  {:width$}  {all_seen:4} of {together:4}", "together");
@@ -239,7 +239,7 @@ fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
 }
 
 /// Returns a note on a scene that is not an error, but worth knowing before a class is graded.
-fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
+fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
     let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
     let found = match found {
         Ok(found) => found,
@@ -249,13 +249,13 @@ fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -
     let mut text = format!(
         "\n{note}: {scene} has {plural} that round-off may flip; by the original's rules correct programs may fail\n"
     );
-    for decision in found.iter().take(LISTED) {
+    for decision in found.iter().take(MAX_LISTED) {
         let word = if decision.collides { "collide" } else { "do not collide" };
         let (pair, pass) = (PairWords(decision.pair), PassWords(decision.pass));
         let _ = writeln!(text, "  step {}: {pair} {word} ({pass})", decision.step);
     }
-    if found.len() > LISTED {
-        let _ = writeln!(text, "  and {} more", found.len() - LISTED);
+    if found.len() > MAX_LISTED {
+        let _ = writeln!(text, "  and {} more", found.len() - MAX_LISTED);
     }
     text
 }

@@ -9,10 +9,10 @@ use crate::{
 use rayon::prelude::*;
 
 /// The number of polynomials in a step above which a program counts as endless.
-const MOST_POLYNOMIALS: usize = 1 << 20;
+const MAX_POLYNOMIALS: usize = 1 << 20;
 
 /// The maximum number of particles of a scene that is used; larger ones, which exist for timing, show nothing more.
-const MOST_PARTICLES: usize = 2_000;
+const MAX_PARTICLES: usize = 2_000;
 
 /// An area of the assignment, with the mistakes that the scenes show.
 #[derive(Debug)]
@@ -23,20 +23,20 @@ pub(super) struct SeenPart {
     pub(super) all: usize,
     /// The mistakes with which the sample program writes the same traces as without, on every scene.
     pub(super) unseen: Vec<&'static str>,
-    /// The mistakes that fewer than [`ENOUGH`] scenes show, so that a small change of one scene could hide them.
+    /// The mistakes that fewer than [`ENOUGH_SCENES`] scenes show, so that a small change of one scene could hide them.
     pub(super) rare: Vec<&'static str>,
 }
 
 /// The number of scenes that are sufficient to show a mistake.
-pub(super) const ENOUGH: usize = 3;
+pub(super) const ENOUGH_SCENES: usize = 3;
 
 /// Returns the areas in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let written = |scene: &Scene, student: Student| {
-        student::trace_within(scene, student, MOST_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
+        student::trace_within(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
-    scenes.retain(|scene| scene.particles.len() <= MOST_PARTICLES);
+    scenes.retain(|scene| scene.particles.len() <= MAX_PARTICLES);
     // Small scenes first, because most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
@@ -51,7 +51,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         .map(|row| {
             let student = Student::new(Some(row.mistake));
             let showing = scenes.iter().zip(&right).filter(|(scene, right)| written(scene, student) != **right);
-            showing.take(ENOUGH).count()
+            showing.take(ENOUGH_SCENES).count()
         })
         .collect();
     let mut parts: Vec<SeenPart> = Vec::new();
@@ -66,7 +66,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         parts[place].all += 1;
         match seen {
             0 => parts[place].unseen.push(row.id),
-            ENOUGH.. => {}
+            ENOUGH_SCENES.. => {}
             _ => parts[place].rare.push(row.id),
         }
     }

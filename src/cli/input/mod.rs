@@ -44,7 +44,7 @@ fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     match known
         .filter(|known| error.kind() == io::ErrorKind::NotFound && library::all_names().any(|name| name == *known))
     {
-        Some(known) => anyhow::anyhow!("there is no such file; the scene that comes with the program is asset:{known}"),
+        Some(known) => anyhow::anyhow!("there is no such file; the built-in scene is asset:{known}"),
         None => error.into(),
     }
 }

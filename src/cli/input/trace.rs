@@ -3,7 +3,7 @@ use super::{asset, no_asset, open, printable_name};
 use crate::files::{Identity, patient};
 use crate::{
     cli::output::has_extension,
-    report::check::{LOOKED_AT, looks_like},
+    report::check::{SNIFFED_BYTES, looks_like},
     scene::Scene,
     suite::library,
     trace::{Layout, Reader},
@@ -77,9 +77,9 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = printable_name(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
-    let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED.0);
+    let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED_TRACE.0);
     let (mut reader, identity): (Box<dyn Read + Send>, _) = if asset(name).filter(is_flawed).is_some() {
-        (Box::new(library::FLAWED.1), None)
+        (Box::new(library::FLAWED_TRACE.1), None)
     } else if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
         (decompress(Box::new(Cursor::new(recording)), &[], &failure)?, None)
@@ -99,7 +99,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     };
     let mut start = Vec::new();
     // The second reading reports bytes that can't be read.
-    let _ = reader.by_ref().take(LOOKED_AT).read_to_end(&mut start);
+    let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
     Ok(TraceInput { name: shown, reader, identity, looks_like, failure })

@@ -12,7 +12,7 @@ fosssim_num::closed_set! {
         Jacobians = "Derivatives of forces", "Look at what each force adds to the second derivatives, block by block.";
         /// The update of velocities by forces, and of positions by velocities.
         Integrator = "Integrator",
-            "Look at the order in which a step changes velocities and positions, and at what it reads.";
+            "Look at the order in which a step changes velocities and positions, and at the values that it uses.";
         /// The force between near bodies.
         Penalty = "Penalty force", "Look at what the penalty force adds to the gradient, for each kind of pair.";
         /// The selection of the pairs for the force between near bodies.
@@ -29,10 +29,10 @@ fosssim_num::closed_set! {
         Handover = "Hand-over to the root finder",
             "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type.";
         /// The contact vector between the objects at the time of impact.
-        ContactVector = "Contact vector", "Look at what the detection returns once the time of impact is known.";
+        ContactVector = "Contact vector", "Look at the vector that the detection returns for the time of impact.";
         /// The choice of valid times of impact, and of the pairs that are checked.
         Decision = "Detection",
-            "Look at which pairs are tested, and at what is done with the time that the root finder returns.";
+            "Look at which pairs are tested, and at how the time from the root finder is used.";
         /// The condition for a collision of bodies that overlap at the end of a step, and their contact vector.
         SimpleDetection = "Detection",
             "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns.";
@@ -43,14 +43,14 @@ fosssim_num::closed_set! {
             "Look at the loop over the pairs in the single pass of continuous-time.";
         /// The impulse rounds of `hybrid`.
         ImpulseLoop = "Impulse loop",
-            "Look at the loop over the impulse rounds: its start, its end, and what it carries over.";
+            "Look at the loop over the impulse rounds: its start, its end, and the values that it passes on.";
         /// The impact zones and their growth.
         ImpactZones = "Impact zones",
             "Look at how impact zones are made, merged and compared, and when their loop ends.";
         /// The rigid motion of one zone.
         Failsafe = "Rigid failsafe", "Look at how one zone is moved as a rigid body, and when it stops instead.";
         /// The output of the trace.
-        Trace = "Trace", "Look at what is written to the trace, and when; the simulation itself may be right.";
+        Trace = "Trace", "Look at when the trace is written, and with which values; the simulation may be right.";
         /// The behavior of the program as a process.
         Process = "Program", "Look at how the program starts and ends.";
     }

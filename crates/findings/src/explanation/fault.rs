@@ -176,7 +176,7 @@ fosssim_num::closed_set! {
             "collisions are found between bodies that do not overlap, or do not approach each other";
         /// Some contacts are missed, and others do not exist.
         Both = "the polynomials are right, the decisions are not: contacts are missed, others are superfluous",
-            "some collisions are missed, and others are found where there are none";
+            "some collisions are missed, and others are found that do not exist";
     }
     /// Returns the sentence about bodies that overlap at the end of a step.
     of_overlaps
@@ -187,7 +187,7 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongVectors {
         /// The vectors are perpendicular to the expected ones.
-        Perpendicular = "it is perpendicular to what it should be",
+        Perpendicular = "it is perpendicular to the right vector",
         /// The vectors have the wrong direction.
         Direction = "it has the wrong direction",
         /// The vectors have length zero.
@@ -195,7 +195,7 @@ fosssim_num::closed_set! {
         /// The vectors are right except for their last digits.
         Inexact = "it is right except for its last digits",
         /// The vectors point in the opposite direction.
-        Reversed = "it points the other way round",
+        Reversed = "it points in the opposite direction",
         /// The vectors have the right direction and the wrong length.
         Length = "it has the right direction, but not the right length",
     }
@@ -244,7 +244,7 @@ fosssim_num::closed_set! {
         /// The loop makes too many rounds.
         More = "the loop makes more rounds than it should",
         /// The loop makes too few rounds in some steps, and too many in others.
-        Other = "the loop makes another number of rounds than it should",
+        Other = "the loop makes a wrong number of rounds",
     }
 }
 
@@ -266,9 +266,9 @@ fosssim_num::closed_set! {
     pub enum WrongPositions {
         /// The first round uses the predicted positions of the integrator.
         Prediction =
-            "the first zones are searched on the predicted positions, not on those that the impulse rounds leave",
+            "the first zones are searched on the predicted positions, not on those after the impulse rounds",
         /// The first round uses other positions than those after the impulse rounds.
-        First = "the first zones are searched on other positions than those that the impulse rounds leave",
+        First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
         /// The detection after the failsafe uses the positions before it.
         BeforeFailsafe = "the detection after the failsafe uses the positions before it",
     }
@@ -294,7 +294,7 @@ fosssim_num::closed_set! {
         /// There are too many rounds.
         More = "the zones make more rounds than they should",
         /// The zones or the number of rounds are wrong, from a later round on.
-        Later = "the zones are right at first, but not in later rounds, or there are not as many as there should be",
+        Later = "the zones are right in the first round, but later rounds are wrong or too few",
     }
 }
 
@@ -315,7 +315,7 @@ fosssim_num::closed_set! {
         /// Zones that share no particle are moved as one zone.
         Joined = "zones that share no particle are moved as one",
         /// Particles are moved that belong to no zone.
-        Others = "zones move particles that are not theirs",
+        Others = "zones move particles that do not belong to them",
         /// Zones that have to stop move on as rigid bodies.
         MoveOn = "zones that must stop move on as rigid bodies",
         /// Zones that have to stop keep their new positions.
@@ -332,7 +332,7 @@ fosssim_num::closed_set! {
         /// The motion of the zones' center of mass.
         Center = "the center of mass of a zone does not move as it should",
         /// The distances between particles of a zone change.
-        Distances = "the particles of a zone do not keep their distances",
+        Distances = "the distances between particles of a zone change",
         /// The zones do not rotate.
         NoTurn = "zones do not turn",
         /// The zones rotate less than they should.
@@ -340,13 +340,13 @@ fosssim_num::closed_set! {
         /// The zones rotate further than they should.
         MoreTurn = "zones turn further than they should",
         /// The zones rotate in the opposite direction.
-        TurnBack = "zones turn the other way round",
+        TurnBack = "zones turn in the opposite direction",
         /// The zones rotate by a wrong angle.
-        Turn = "zones do not turn by the angle that they should",
+        Turn = "zones turn by a wrong angle",
         /// The zones' velocities are wrong.
-        Velocities = "velocities in a zone are not those of its motion from start to end",
+        Velocities = "velocities in a zone do not match its motion from start to end",
         /// The speeds in the zones are wrong.
-        Speeds = "velocities in a zone are not those of its motion from start to end, though along it",
+        Speeds = "velocities in a zone have the direction of its motion from start to end, but the wrong size",
     }
 }
 

@@ -64,9 +64,9 @@ fosssim_num::closed_set! {
         /// All coefficients are the same number in every sample.
         AllEqual = "all-equal", "All coefficients are the same constant";
         /// The coefficients are rounded to single precision.
-        SinglePrecision = "single-precision", "The coefficients have single precision only";
+        SinglePrecision = "single-precision", "The coefficients have only single precision";
         /// The coefficients are divided by the leading coefficient, even if it is negative.
-        Monic = "monic", "The polynomial is divided by its leading coefficient, whose sign gets lost";
+        Monic = "monic", "The polynomial is divided by its leading coefficient, which loses its sign";
         /// There are too many coefficients.
         TooLong = "too-long", "The polynomial has too high a degree";
         /// The lowest power comes first.
@@ -86,14 +86,14 @@ fosssim_num::closed_set! {
             "A polynomial of the pair is used instead of another one, with the wrong sign";
         /// All coefficients except the constant one are missing.
         ConstantOnly = "cut",
-            "The polynomial is cut to its constant coefficient: it is tested at the start of the step only";
+            "The polynomial is cut to its constant coefficient, so it is tested only at the start of the step";
         /// The leading coefficients are missing.
         Cut = "cut", "The polynomial is cut: leading coefficients are missing";
         /// The last coefficients are missing.
         CutEnd = "cut-end", "The polynomial is cut: its last coefficients are missing";
         /// Every displacement is multiplied by the same factor.
         DisplacementScale = "displacement-scale",
-            "All displacements carry the same factor, as velocities or those of another time step do";
+            "All displacements have the same factor, as if they were velocities or had another time step";
     }
     /// Returns the text of the guess.
     words

@@ -95,11 +95,11 @@ pub fn names() -> impl Iterator<Item = String> {
     })
 }
 
-/// Returns the end of a message about an unknown suite, like [`near::meant`].
+/// Returns the end of a message about an unknown suite, like [`near::suggest`].
 #[must_use]
-pub fn meant(name: &str) -> String {
+pub fn suggest(name: &str) -> String {
     let known: Vec<String> = names().collect();
-    near::meant(name, known.iter().filter_map(|known| known.split('@').next()))
+    near::suggest(name, known.iter().filter_map(|known| known.split('@').next()))
 }
 
 /// Returns the name of the default suite.

@@ -92,7 +92,7 @@ pub fn run(
             telling.get_or_insert(panic);
         }
     };
-    let mut grades = share_out(grader, &gradings, &mut tell);
+    let mut grades = distribute(grader, &gradings, &mut tell);
     Grade::note_same_programs(&mut grades);
     drop(gradings);
     // Sweep again: the processes of killed graders may have needed a moment to end.
@@ -103,7 +103,7 @@ pub fn run(
 
 /// Lets each job process one scene after the other. The job with a submission's last result makes its grade; this
 /// thread receives all events.
-fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
+fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();
     let next = AtomicUsize::new(0);

@@ -13,7 +13,7 @@ use fosssim_num::{
 };
 
 /// The part of an edge, from each end, within which positions count as near the end.
-const NEAR: f64 = 0.05;
+const NEAR_END: f64 = 0.05;
 
 /// Returns the stage in which a pair is checked, as a property.
 pub(super) const fn place_of_stage(stage: Stage) -> Found {
@@ -26,7 +26,7 @@ pub(super) const fn place_of_stage(stage: Stage) -> Found {
     }
 }
 
-pub(super) fn when(time: f64) -> When {
+pub(super) fn time_range(time: f64) -> When {
     match time {
         0.0 => When::Start,
         1.0 => When::End,
@@ -149,8 +149,8 @@ fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
 pub(super) fn place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
     let [one, two, three] = [0, 1, 2].map(|index| position(detection, bodies[index], time));
     match (one - two).dot(&(three - two)) / (three - two).dot(&(three - two)) {
-        ..NEAR => Place::First,
-        alpha if alpha > 1.0 - NEAR => Place::Second,
+        ..NEAR_END => Place::First,
+        alpha if alpha > 1.0 - NEAR_END => Place::Second,
         _ => Place::Inside,
     }
 }
@@ -180,7 +180,7 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
 
 /// Returns the reason why a pair does not collide, from the signs of its polynomials at a few times of this step and
 /// the next.
-pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
+pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     const TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
     let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
@@ -201,7 +201,7 @@ pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
 
 /// Returns the motion of a zone from the start of the step to its positions before the failsafe. The arithmetic is that
 /// of collisions.md 5: a zone that does not turn has exactly zero angular momentum.
-pub(super) fn motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
+pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
     let moved = |particle| at(q_end, particle) - at(q_start, particle);
     if particles.iter().all(|&particle| moved(particle) == Vec2::zeros()) {

@@ -17,7 +17,7 @@ pub struct Family {
 }
 
 /// An event: the index of its kind in [`FAMILIES`], and the index of each property's value.
-pub(super) type Happening = (usize, Vec<usize>);
+pub(super) type Event = (usize, Vec<usize>);
 
 /// Declares a kind of event: its number, its properties, and the values that exclude each other.
 macro_rules! family {
@@ -30,7 +30,7 @@ macro_rules! family {
         impl $type {
             pub(super) const FAMILY: Family = Family { name: $name, axes: &[$($axis::AXIS),+], never: $never };
 
-            pub(super) fn happening(self) -> Happening {
+            pub(super) fn happening(self) -> Event {
                 ($number, vec![$(self.$field as usize),+])
             }
         }

@@ -128,7 +128,7 @@ impl Coverage {
     }
 
     /// Records an event.
-    fn note(&mut self, (family, values): &families::Happening) {
+    fn note(&mut self, (family, values): &families::Event) {
         for (first, &one) in values.iter().enumerate() {
             for (second, &other) in values.iter().enumerate().skip(first + 1) {
                 self.seen.insert(Pairing { family: *family, one: (first, one), other: (second, other) });

@@ -6,7 +6,7 @@ use super::{
     },
     events,
     families::{
-        ContinuousStep, EdgeContact, HalfPlaneContact, Happening, HybridStep, MovedZone, NoContact, ParticleContact,
+        ContinuousStep, EdgeContact, Event, HalfPlaneContact, HybridStep, MovedZone, NoContact, ParticleContact,
     },
 };
 use fosssim_model::{
@@ -17,7 +17,7 @@ use std::collections::BTreeSet;
 
 /// The bodies of a contact of the current pass, and its event in two forms: as their only contact, and as one of
 /// several. The end of the pass decides which applies.
-type WatchedContact = (Vec<usize>, [Happening; 2]);
+type WatchedContact = (Vec<usize>, [Event; 2]);
 
 /// A zone of the last round.
 type EarlierZone = (Vec<usize>, bool);
@@ -26,12 +26,12 @@ pub(super) struct Watch<'a> {
     scene: &'a Scene,
     coverage: &'a mut Coverage,
     stage: Stage,
-    step: StepHeard,
+    step: StepEvents,
 }
 
 /// The events of the current step.
 #[derive(Default)]
-struct StepHeard {
+struct StepEvents {
     /// The positions of bodies at the start and at the end of the step, as the current pass sees them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
@@ -48,12 +48,12 @@ struct StepHeard {
 
 impl<'a> Watch<'a> {
     pub(super) fn new(scene: &'a Scene, coverage: &'a mut Coverage) -> Self {
-        Self { scene, coverage, stage: Stage::Simple, step: StepHeard::default() }
+        Self { scene, coverage, stage: Stage::Simple, step: StepEvents::default() }
     }
 
-    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Happening {
+    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Event {
         let scene = self.scene;
-        let (found, when) = (events::place_of_stage(self.stage), events::when(time));
+        let (found, when) = (events::place_of_stage(self.stage), events::time_range(time));
         let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
         let masses = events::masses(scene, bodies);
         match detection.pair.kind {
@@ -129,7 +129,7 @@ impl<'a> Watch<'a> {
         let zone = MovedZone {
             size,
             held,
-            motion: events::motion(scene, particles, &self.step.q_start, &self.step.q_end),
+            motion: events::zone_motion(scene, particles, &self.step.q_start, &self.step.q_end),
             age,
             position,
             edge: ZoneEdge::None,
@@ -187,7 +187,7 @@ const fn forces(forces: &[Force]) -> Forces {
 
 impl Observer for Watch<'_> {
     fn begin_step(&mut self, _step: u32) {
-        self.step = StepHeard::default();
+        self.step = StepEvents::default();
     }
 
     fn begin_pass(&mut self, pass: Pass) {
@@ -215,7 +215,7 @@ impl Observer for Watch<'_> {
             Decision::Miss { .. } => {
                 let no_contact = NoContact {
                     kind: events::kind(detection.pair.kind),
-                    why: events::why(detection.pair.kind, detection.polynomials),
+                    why: events::miss_reason(detection.pair.kind, detection.polynomials),
                     found: events::place_of_stage(self.stage),
                     fixed: events::some_fixed(self.scene, &bodies),
                 };

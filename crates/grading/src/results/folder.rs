@@ -2,7 +2,7 @@
 //!
 //! A line is written and flushed before its result is reported. A line that a crash cut short is dropped at the next
 //! opening. Lines of other versions are ignored. A lock prevents two graders in one folder.
-use super::{KeepError, Results, line, read_line};
+use super::{KeepError, Results, format_line, read_line};
 use crate::{key::Key, result::SceneResult};
 use fosssim_files::{FileError, Folder};
 use std::{
@@ -19,14 +19,14 @@ use std::{
 pub const JOURNAL: &str = "journal.jsonl";
 
 /// The name of the file that an active grader keeps locked.
-pub const LOCK: &str = ".lock";
+pub const LOCK_FILE: &str = ".lock";
 
 /// The maximum size of a journal, in bytes: four times that of 10,000 submissions of 85 scenes that are all wrong and
 /// well explained.
-pub const LARGEST_JOURNAL: u64 = 16 << 30;
+pub const MAX_JOURNAL_BYTES: u64 = 16 << 30;
 
 /// The maximum length of a line, in bytes; results have some thousand bytes. A journal with a longer line is damaged.
-pub const LONGEST_LINE: usize = 16 << 20;
+pub const MAX_LINE_BYTES: usize = 16 << 20;
 
 /// The results in an output folder, which stays locked while this value exists.
 #[derive(Debug)]
@@ -54,19 +54,18 @@ impl FolderResults {
             move |reason: io::Error| io::Error::new(reason.kind(), format!("{}: {reason}", path.display()))
         };
         let opened = Folder::to_write(folder).map_err(at(""))?;
-        let lock = own_file(&opened, LOCK).map_err(at(LOCK))?;
+        let lock = own_file(&opened, LOCK_FILE).map_err(at(LOCK_FILE))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => io::Error::other(format!(
-                "another grader works in {}: wait for it, or give another --output folder",
+                "another grader is using {}: wait for it, or choose another --output folder",
                 folder.display()
             )),
-            std::fs::TryLockError::Error(reason) => at(LOCK)(reason),
+            std::fs::TryLockError::Error(reason) => at(LOCK_FILE)(reason),
         })?;
         let mut file = own_file(&opened, JOURNAL).map_err(at(JOURNAL))?;
         let metadata = file.metadata().map_err(at(JOURNAL))?;
-        if metadata.len() > LARGEST_JOURNAL && !fresh {
-            let text =
-                format!("it has more than {LARGEST_JOURNAL} bytes, the limit of a journal; --fresh begins a new one");
+        if metadata.len() > MAX_JOURNAL_BYTES && !fresh {
+            let text = format!("the journal has more than {MAX_JOURNAL_BYTES} bytes; --fresh starts a new one");
             return Err(at(JOURNAL)(io::Error::other(text)));
         }
         let mut found = BTreeMap::new();
@@ -91,7 +90,7 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     folder.own_file(name).map_err(|error| match error {
         FileError::System { source, .. } => source,
         FileError::NotRegular { what, .. } => {
-            io::Error::other(format!("it is {what}, not a file of the grader: remove it"))
+            io::Error::other(format!("it is {what}, not a file of the grader; remove it"))
         }
         error => io::Error::other(error),
     })
@@ -123,14 +122,14 @@ pub fn for_each_line<E: From<io::Error>>(
     let mut line = Vec::new();
     loop {
         line.clear();
-        let read = journal.by_ref().take(LONGEST_LINE as u64).read_until(b'\n', &mut line)?;
+        let read = journal.by_ref().take(MAX_LINE_BYTES as u64).read_until(b'\n', &mut line)?;
         if line.last() == Some(&b'\n') {
             take(&line)?;
-        } else if read < LONGEST_LINE {
+        } else if read < MAX_LINE_BYTES {
             return Ok(());
         } else {
             let text = format!(
-                "it has a line of more than {LONGEST_LINE} bytes, the limit of a result: remove it, and its scenes \
+                "it has a line of more than {MAX_LINE_BYTES} bytes, the limit of a result: remove it, and its scenes \
                  are graded again"
             );
             return Err(io::Error::other(text).into());
@@ -152,7 +151,7 @@ impl Results for FolderResults {
     }
 
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError> {
-        let line = line(key, submission, result);
+        let line = format_line(key, submission, result);
         let Journal { path, file, found } = &mut *self.journal();
         append(file, &line).map_err(|reason| KeepError(format!("{}: {reason}", path.display())))?;
         found.insert(key.clone(), result.clone());
@@ -248,7 +247,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join(JOURNAL);
         let journal = File::create(&path).expect("a file");
-        journal.set_len(LARGEST_JOURNAL + 1).expect("a hole");
+        journal.set_len(MAX_JOURNAL_BYTES + 1).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("too large").to_string();
         assert!(refused.contains("journal.jsonl") && refused.contains("--fresh"), "{refused}");
         // A line without end takes neither memory nor time, and nothing is changed.

@@ -4,8 +4,8 @@
 //! scene, rule or grader are not found. The outcome of a grading does not depend on the storage.
 mod folder;
 
-pub use super::form::{Entry, line, read_line};
-pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, for_each_line};
+pub use super::form::{Entry, format_line, read_line};
+pub use folder::{FolderResults, JOURNAL, LOCK_FILE, MAX_JOURNAL_BYTES, MAX_LINE_BYTES, for_each_line};
 
 use super::{key::Key, result::SceneResult};
 

@@ -10,7 +10,7 @@ use crate::{
     plan::PlannedGroup,
     result::{Reason, RunEnd, SceneResult},
     score,
-    smallest::{DescribeSmallest, QUICK, Shrinker, SmallestScene, WrongScene, causes, impatient},
+    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, causes, impatient},
     staging::StagedProgram,
     verdict::Verdict,
 };
@@ -21,7 +21,7 @@ use fosssim_mistakes::{
 use fosssim_model::assignments::Assignment;
 
 /// The maximum number of causes per submission for which a smallest scene is made.
-const MOST_CAUSES: usize = 4;
+const MAX_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {
     /// Returns the grade of the results of all scenes, in the plan's order, each with whether it was found. If the
@@ -33,7 +33,7 @@ impl SubmissionGrading<'_> {
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
             .collect();
-        if let Some((end, why)) = patience::end(&plan.patience, options.fail_fast, &known) {
+        if let Some((end, why)) = patience::find_end(&plan.patience, options.fail_fast, &known) {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
                 *result = (patience::left_out(scene, why), false);
             }
@@ -53,7 +53,7 @@ impl SubmissionGrading<'_> {
         };
         let mut warnings = self.grader.backend.weaknesses();
         if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
-            warnings.push(one_file::SHARED.to_owned());
+            warnings.push(one_file::SHARED_FILE.to_owned());
         }
         let is_visible = |group: &PlannedGroup| group.marking.visibility == Visibility::Visible;
         let active = self.grader.backend.layers().iter().filter(|report| report.active);
@@ -100,11 +100,11 @@ impl SubmissionGrading<'_> {
             runner: Runner { limits: &limits, cards: None, ..self.runner(first, None) },
             program: &staged.program,
             assignment: plan.assignment(),
-            limits: QUICK,
+            limits: QUICK_LIMITS,
             step: None,
         };
         let mut found: Vec<SmallestScene> = Vec::new();
-        for mut cause in causes(&likely, &wrong).into_iter().take(MOST_CAUSES) {
+        for mut cause in causes(&likely, &wrong).into_iter().take(MAX_CAUSES) {
             if cause.scenes.iter().any(|task| is_visible(&task.name)) {
                 cause.scenes.retain(|task| is_visible(&task.name));
             }

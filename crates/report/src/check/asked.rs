@@ -14,7 +14,7 @@ pub fn is_wrong(outcome: &Outcome) -> bool {
 
 /// Returns the reason why a scene has no verdict for any trace; `None` for nearly all scenes.
 #[must_use]
-pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
+pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     match outcome.parity.endless {
         Some(StepError::VortexHessian { .. }) => Some(format!(
             "the scene {scene} has a vortexforce, which has no Hessian: choose an integrator that is not implicit"
@@ -25,7 +25,7 @@ pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
 
 /// Returns the message about a trace that could not be read to its end, and so has no verdict.
 #[must_use]
-pub fn not_read(outcome: &Outcome, trace: &str, why: &str) -> String {
+pub fn describe_unread(outcome: &Outcome, trace: &str, why: &str) -> String {
     let place = match &outcome.stop {
         Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
         _ => String::new(),

@@ -11,13 +11,13 @@ use fosssim_model::trace::LoggedImpulse;
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     format!(
         "{}\n{}",
-        style.paint(Look::Strong, &format!("First difference: {}", place(finding, steps))),
-        block(finding, style)
+        style.paint(Look::Strong, &format!("First difference: {}", describe_place(finding, steps))),
+        render_finding(finding, style)
     )
 }
 
 /// Returns the place of a finding, for a heading.
-pub(crate) fn place(finding: &Finding, steps: u32) -> String {
+pub(crate) fn describe_place(finding: &Finding, steps: u32) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
     match finding.step {
         0 => "the first record".to_owned(),
@@ -26,7 +26,7 @@ pub(crate) fn place(finding: &Finding, steps: u32) -> String {
 }
 
 /// Returns one finding as a sentence, and its values side by side.
-pub(super) fn block(finding: &Finding, style: Style) -> String {
+pub(super) fn render_finding(finding: &Finding, style: Style) -> String {
     format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
 }
 
@@ -96,22 +96,22 @@ impl SideBySide {
 pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
     match detail {
-        FindingDetail::MissedCollision { expected } => rows(collision(Some((*expected).into()), None)),
+        FindingDetail::MissedCollision { expected } => rows(collision_rows(Some((*expected).into()), None)),
         FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-            rows(collision(None, Some(*actual)))
+            rows(collision_rows(None, Some(*actual)))
         }
         FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
-            rows(collision(Some((*expected).into()), Some(*actual)))
+            rows(collision_rows(Some((*expected).into()), Some(*actual)))
         }
         FindingDetail::PolynomialCount { expected, actual, per_pass } => SideBySide {
-            after: vec![format!("one pass over all pairs asks about {per_pass}")],
-            ..rows(vec![counts("polynomials", *expected, *actual)])
+            after: vec![format!("one pass over all pairs has {per_pass}")],
+            ..rows(vec![count_row("polynomials", *expected, *actual)])
         },
         FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
             let more = actual_size.saturating_sub(actual.coefficients().len());
             let mut sides = polynomials(place, expected.coefficients(), actual.coefficients());
             if more > 0 {
-                sides.after.push(format!("{more} more of the trace are not shown"));
+                sides.after.push(format!("{more} further coefficients of the trace are not shown"));
             }
             sides
         }
@@ -133,9 +133,9 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             sides
         }
         FindingDetail::Position { expected, actual, .. } | FindingDetail::Velocity { expected, actual, .. } => {
-            rows(vec![numbers("x", expected[0], actual[0]), numbers("y", expected[1], actual[1])])
+            rows(vec![number_row("x", expected[0], actual[0]), number_row("y", expected[1], actual[1])])
         }
-        FindingDetail::PassCount { expected, actual, .. } => rows(vec![counts("passes", *expected, *actual)]),
+        FindingDetail::PassCount { expected, actual, .. } => rows(vec![count_row("passes", *expected, *actual)]),
         FindingDetail::PassPositions { place }
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
@@ -144,11 +144,11 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     }
 }
 
-fn counts(name: &'static str, expected: usize, actual: usize) -> Row {
+fn count_row(name: &'static str, expected: usize, actual: usize) -> Row {
     Row { name, expected: Value::Count(expected), actual: Value::Count(actual), differs: expected != actual }
 }
 
-fn numbers(name: &'static str, expected: f64, actual: f64) -> Row {
+fn number_row(name: &'static str, expected: f64, actual: f64) -> Row {
     let differs = expected.to_bits() != actual.to_bits();
     Row { name, expected: Value::Number(expected), actual: Value::Number(actual), differs }
 }
@@ -199,9 +199,9 @@ fn polynomials_with(
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
 /// Returns the contact normal and time.
-fn collision(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
+fn collision_rows(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
-        (Some(expected), Some(actual)) => numbers(name, expected, actual),
+        (Some(expected), Some(actual)) => number_row(name, expected, actual),
         (expected, actual) => {
             let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);
             Row { name, expected: value(expected), actual: value(actual), differs: false }

@@ -23,7 +23,7 @@ view! {
         /// The first finding of each kind, and the number of each kind. Tolerances depend on the values, so they are
         /// null.
         findings: Vec<CountedView> =
-            CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
+            CountedView::count(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
         /// The smallest and the largest factor of the polynomials; null if it is 1.
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "Option<[crate::view::Number; 2]>")]
@@ -52,7 +52,7 @@ pub(super) struct CountedView {
 
 impl CountedView {
     /// Returns the first findings of each kind by a book, each with the number of findings.
-    pub(super) fn all(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
+    pub(super) fn count(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
         firsts
             .iter()
             .map(|first| Self { count: count(first.kind()), first: FindingView::from_finding(book, first) })

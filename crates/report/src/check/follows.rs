@@ -3,7 +3,7 @@ use crate::number::count as number;
 use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
 /// The kinds of faults of a formula, as opposed to faults of its input positions.
-const OF_FORMULAS: [FindingKind; 6] = [
+const FORMULA_KINDS: [FindingKind; 6] = [
     FindingKind::PolynomialDegree,
     FindingKind::VanishingPolynomial,
     FindingKind::Coefficient,
@@ -14,7 +14,7 @@ const OF_FORMULAS: [FindingKind; 6] = [
 
 /// Returns whether a finding of this kind may be a fault of a formula.
 pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
-    OF_FORMULAS.contains(&kind)
+    FORMULA_KINDS.contains(&kind)
 }
 
 /// Returns whether the finding is a formula's fault in a pass whose input positions come from earlier passes of the
@@ -32,10 +32,10 @@ pub(crate) fn count(outcome: &Outcome) -> u64 {
     let examples = outcome.parity.findings.examples.iter().filter(|example| is_of_formula(example.kind()));
     let has_states = charged(FindingKind::Position) + charged(FindingKind::Velocity) > 0;
     let follow = charged(FindingKind::PassPositions) > 0 || has_states && { examples }.all(is_of_later_pass);
-    if !follow || OF_FORMULAS.into_iter().any(|kind| charged(kind) > 0) {
+    if !follow || FORMULA_KINDS.into_iter().any(|kind| charged(kind) > 0) {
         return 0;
     }
-    OF_FORMULAS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
+    FORMULA_KINDS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
 }
 
 /// Returns the number of consequential polynomials with its noun.

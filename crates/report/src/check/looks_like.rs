@@ -1,7 +1,7 @@
 //! The detection of files that are not traces.
 
 /// The number of bytes at the start of a file that are checked for its kind.
-pub const LOOKED_AT: u64 = 512;
+pub const SNIFFED_BYTES: u64 = 512;
 
 /// Returns the kind of a file that begins with the given bytes, if it can't be a trace. A trace begins with the bits of
 /// a position.

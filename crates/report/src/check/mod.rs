@@ -16,11 +16,11 @@ mod looks_like;
 mod steps;
 mod text;
 
-pub use asked::{is_wrong, no_verdict, not_read};
-pub use looks_like::{LOOKED_AT, looks_like};
+pub use asked::{describe_no_verdict, describe_unread, is_wrong};
+pub use looks_like::{SNIFFED_BYTES, looks_like};
 pub use steps::{LISTED, StepChoice, WrongSteps};
 pub use text::describe_stop;
-pub(crate) use text::{headline, notes, problem};
+pub(crate) use text::{describe_problem, headline, notes};
 
 use super::{
     annotation::annotation,
@@ -75,14 +75,14 @@ impl Check<'_> {
     }
 
     /// Returns whether the file is not a trace at all, so that the report says only that.
-    pub(crate) fn is_no_trace(&self) -> bool {
+    pub(crate) fn is_not_a_trace(&self) -> bool {
         self.looks_like.is_some() && !self.is_accepted()
     }
 
     /// Returns the text which book accepts the trace, if the rule books disagree.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
-        cause(self.outcome).map(fair::sides)
+        cause(self.outcome).map(fair::describe_sides)
     }
 
     /// Returns the official book.
@@ -134,7 +134,7 @@ impl Check<'_> {
 }
 
 /// Counts how often the original prints each of its messages, with the texts that graders of its output search for.
-fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
+fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     let mut messages: BTreeMap<_, _> = FindingKind::ALL
         .into_iter()
         .filter_map(|kind| Some((kind.original_message()?, outcome.parity.findings.counts.get(kind))))
@@ -189,7 +189,7 @@ view! {
             check.account().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
         /// The first finding of each kind by the official book, and the number of each kind.
         findings: Vec<CountedView> =
-            CountedView::all(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
+            CountedView::count(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
         /// Advice for the kind of the first finding.
         advice: Vec<&'static str> = advice::lines(check),
         /// Commands that show more of the first finding.
@@ -234,7 +234,7 @@ view! {
         collisions_passed: Option<bool> = outcome.parity.collisions_passed,
         /// The number of times that the original prints each of its messages; messages that it does not print are left
         /// out.
-        messages: BTreeMap<&'static str, u64> = messages(outcome),
+        messages: BTreeMap<&'static str, u64> = count_messages(outcome),
     }
 }
 

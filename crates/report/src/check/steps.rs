@@ -59,7 +59,7 @@ impl WrongSteps {
     }
 
     /// Returns the findings of a book, including those that follow from the whole trace.
-    fn by(&self, book: Book, account: &BookFindings) -> Steps {
+    fn findings_of(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
             Book::Fair => self.fair.clone(),
@@ -117,7 +117,7 @@ impl Steps {
 
 /// Returns the steps of the official book, or of the other one if the official book has none.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
-    let of = |book| (book, check.steps.by(book, check.outcome.findings_by(book)));
+    let of = |book| (book, check.steps.findings_of(book, check.outcome.findings_by(book)));
     let official = of(check.book());
     if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.ask_fair() {
         return of(Book::Fair);
@@ -127,11 +127,11 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
 
 /// Returns the numbers of the official book's wrong steps, up to [`LISTED`].
 pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
-    check.steps.by(check.book(), check.outcome.findings_by(check.book())).numbers
+    check.steps.findings_of(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
 /// Returns whether only certain steps are requested, so that the report has nothing else.
-pub(super) fn only_these(check: &Check<'_>) -> bool {
+pub(super) fn shows_only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, StepChoice::These(_))
 }
 
@@ -154,8 +154,8 @@ fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, 
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
-        Some(step) => block(check, step, style),
-        None => format!("{}\n", style.paint(Look::Strong, &nothing_wrong(check, number))),
+        Some(step) => render_step(check, step, style),
+        None => format!("{}\n", style.paint(Look::Strong, &describe_right(check, number))),
     };
     let mut text = requested_steps(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
@@ -166,7 +166,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
+fn describe_right(check: &Check<'_>, step: u32) -> String {
     let outcome = check.outcome;
     let sound = outcome.steps_judged - outcome.damaged_steps;
     match step {
@@ -174,13 +174,13 @@ fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
         0 => "First record: only the fair rules check it".to_owned(),
         _ if step <= sound => format!("Step {step} of {}: nothing is wrong", outcome.steps),
         _ if step <= outcome.steps_judged => {
-            format!("Step {step} of {}: not checked, because the trace is damaged there or before", outcome.steps)
+            format!("Step {step} of {}: not checked, because the trace is damaged in it or before it", outcome.steps)
         }
-        _ => format!("Step {step} of {}: not judged, because the trace can't be followed so far", outcome.steps),
+        _ => format!("Step {step} of {}: not judged, because judging stopped at an earlier step", outcome.steps),
     }
 }
 
-fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
+fn render_step(check: &Check<'_>, step: &Step, style: Style) -> String {
     let findings = step.firsts.len() as u64 + step.more.total();
     let frame = step.firsts.first().map_or(0, |first| first.frame);
     let heading = match step.number {
@@ -191,7 +191,7 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
     };
     let mut text = style.paint(Look::Strong, &heading) + "\n";
     for finding in &step.firsts {
-        text += &divergence::block(finding, style);
+        text += &divergence::render_finding(finding, style);
         match step.more.get(finding.kind()) {
             0 => {}
             more => text += &format!("  and {} more of this kind ({})\n", count(more), finding.kind()),
@@ -214,7 +214,7 @@ pub(super) struct WrongStepView {
 /// Returns the requested steps; `None` if no step was requested.
 pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
-    let counted = |step: &Step| CountedView::all(book, &step.firsts, |kind| 1 + step.more.get(kind));
+    let counted = |step: &Step| CountedView::count(book, &step.firsts, |kind| 1 + step.more.get(kind));
     let view =
         |(step, found): (u32, Option<&Step>)| WrongStepView { step, findings: found.map(counted).unwrap_or_default() };
     Some(requested_steps(check, &steps)?.into_iter().map(view).collect())

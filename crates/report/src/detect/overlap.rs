@@ -53,16 +53,16 @@ impl Overlap<'_> {
         text +=
             &format!("  normal {}: from the first object to the nearest point of the second\n", vector(study.normal));
         text += &format!(
-            "  distance {}, radii together {}: they {}overlap\n",
+            "  distance {}, sum of radii {}: they {}overlap\n",
             number(study.distance()),
             number(study.reach),
-            not(overlap)
+            negation(overlap)
         );
         let [one, other] = study.velocities.map(vector);
         text += &format!(
             "  velocities {one} and {other}, their difference times the normal {}: they {}approach\n",
             number(study.approach()),
-            not(approach)
+            negation(approach)
         );
         text += &heading("Decision");
         let (look, words) = match study.collides {
@@ -120,7 +120,7 @@ impl Overlap<'_> {
     }
 }
 
-const fn not(is: bool) -> &'static str {
+const fn negation(is: bool) -> &'static str {
     if is { "" } else { "do not " }
 }
 

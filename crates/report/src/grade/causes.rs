@@ -15,8 +15,8 @@ pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();
-    for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_told(scene)) {
-        found.entry((scene.verdict, cause(scene))).or_insert((place, Vec::new())).1.push(scene);
+    for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_listed(scene)) {
+        found.entry((scene.verdict, describe_cause(scene))).or_insert((place, Vec::new())).1.push(scene);
     }
     let mut causes: Vec<_> = found.into_values().collect();
     causes.sort_by_key(|(place, scenes)| {
@@ -33,7 +33,7 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
 }
 
 /// Returns the scene that shows a mistake best.
-pub(crate) fn example<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
+pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
     let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
     named.min_by_key(|scene| obscurity(scene))
 }
@@ -54,20 +54,20 @@ fn obscurity(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
 }
 
 /// Returns whether the report lists the scene.
-pub(crate) fn is_told(scene: &SceneGrade) -> bool {
+pub(crate) fn is_listed(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
 /// Returns the cause of a scene's verdict, as text: the end of its program, its likely mistakes, the kind of the first
 /// finding, or the summary without numbers. A scene that the rule books judge differently has its own cause.
-fn cause(scene: &SceneGrade) -> Vec<String> {
+fn describe_cause(scene: &SceneGrade) -> Vec<String> {
     if scene.verdict.is_accepted() || scene.differs.is_some() {
         return vec![scene.scene.clone()];
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
         // If nothing is logged, the place of the first difference does not matter.
         let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
-        return std::iter::once(words::ending(scene)).chain(details).collect();
+        return std::iter::once(words::describe_ending(scene)).chain(details).collect();
     }
     if !scene.settled.is_empty() {
         return scene.settled.iter().map(words::explanation::what).collect();

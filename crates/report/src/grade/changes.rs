@@ -4,7 +4,7 @@ use crate::{number::format_count, style::Look};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
 /// The maximum number of scenes that a line names.
-const NAMED: usize = 5;
+const MAX_NAMED: usize = 5;
 
 /// Returns the lines about the changes, each with its style: points, and scenes by the kind of change.
 pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
@@ -27,7 +27,7 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let named = kinds.into_iter().filter(|(_, _, names)| !names.is_empty());
     let mut lines: Vec<(Look, String)> = named
         .map(|(look, verb, names)| {
-            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_some(&names, NAMED)))
+            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_some(&names, MAX_NAMED)))
         })
         .collect();
     if lines.is_empty() {

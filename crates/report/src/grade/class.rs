@@ -22,8 +22,8 @@ pub(crate) struct SceneShare {
 /// program.
 #[must_use]
 pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
-    let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));
-    let (scenes, whole) = hardest(grades);
+    let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), render_head(grades));
+    let (scenes, whole) = find_hardest(grades);
     if !scenes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes with the fewest right answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
@@ -43,7 +43,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
             let _ = writeln!(text, "  {} accepted for all", format_count(whole as u64, "scene"));
         }
     }
-    let mistakes = frequent(grades);
+    let mistakes = find_frequent(grades);
     if !mistakes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Most frequent mistakes"));
         let mut table = Table::new([Align::Right, Align::Left]);
@@ -122,7 +122,7 @@ impl ClassFigures {
 
 /// Returns the figures as text, such as `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median 71,
 /// from 0 to 100 of 100 points`.
-fn head(grades: &[Grade]) -> String {
+fn render_head(grades: &[Grade]) -> String {
     let figures = ClassFigures::from_grades(grades);
     let all = format_count(figures.submissions as u64, "submission");
     let mut text = format!("{all}, {} ran, {} accepted", figures.ran, figures.accepted);
@@ -149,7 +149,7 @@ pub(crate) fn never_ran(grade: &Grade) -> bool {
 
 /// Returns the scenes that not all submissions have right, the hardest first, and the number of further ones.
 /// Submissions that were never run, scenes that were not run, and failures of the grader do not count.
-pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
+pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
     for scene in grades.iter().filter(|grade| !never_ran(grade)).flat_map(Grade::scenes) {
@@ -176,7 +176,7 @@ pub(crate) struct SharedMistake {
 }
 
 /// Returns the likely mistakes with the submissions that make them, the most frequent first.
-pub(crate) fn frequent(grades: &[Grade]) -> Vec<SharedMistake> {
+pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
         for (mistake, _) in likely_mistakes(grade) {
@@ -231,7 +231,7 @@ mod tests {
     #[test]
     fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
         let grades = [samples::fault(), samples::stopped_grade()];
-        assert_eq!(hardest(&grades), (Vec::new(), 1));
-        assert_eq!(hardest(&[samples::bad(), samples::unfit()]), hardest(&[samples::bad()]));
+        assert_eq!(find_hardest(&grades), (Vec::new(), 1));
+        assert_eq!(find_hardest(&[samples::bad(), samples::unfit()]), find_hardest(&[samples::bad()]));
     }
 }

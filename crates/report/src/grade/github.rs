@@ -1,9 +1,9 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
 use super::{
-    super::explain, change_lines, difference, format_points, head_lines, no_points, phrases::NOT_GRADED, points,
-    wrong_first,
+    super::explain, change_lines, describe_difference, format_points, head_lines, no_points, phrases::NOT_GRADED,
+    points, wrong_first,
 };
-use crate::annotation::{annotation, annotation_of};
+use crate::annotation::{annotation, join_annotation};
 use crate::foreign::{clean_output, one_line};
 use crate::words;
 use fosssim_findings::{Grade, PassedOver, Verdict};
@@ -19,13 +19,13 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
         if let Some(build) = grade.failed_build() {
             let title = format!("{}: {}", grade.submission, words::build(&build.end));
             let words: String = clean_output(&build.output).chars().take(4000).collect();
-            text += &annotation_of("error", &title, words.lines());
+            text += &join_annotation("error", &title, words.lines());
         }
         // GitHub shows only ten annotations, so the most important ones come first, without repetition.
         let head = head_lines(grade);
         if !head.is_empty() && grade.failed_build().is_none() {
-            let title = format!("{}: {}, {}", grade.submission, grade.verdict, score(grade));
-            text += &annotation_of("error", &title, head.iter().map(String::as_str));
+            let title = format!("{}: {}, {}", grade.submission, grade.verdict, format_score(grade));
+            text += &join_annotation("error", &title, head.iter().map(String::as_str));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted() && grade.unfit().is_none());
         for scene in wrong {
@@ -36,7 +36,7 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
             text += &annotation(level, &title, &words.join("; "));
         }
         for scene in grade.scenes() {
-            let Some(words) = difference(scene) else { continue };
+            let Some(words) = describe_difference(scene) else { continue };
             text += &annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &words);
         }
     }
@@ -62,7 +62,7 @@ pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
 pub(crate) fn summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
-        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score(grade)));
+        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&format_score(grade)));
         for line in head_lines(grade) {
             let _ = writeln!(text, "{}\n", cell(&line));
         }
@@ -90,7 +90,7 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
             let name = cell(&scene.scene);
             let words: Vec<String> = std::iter::once(words::summary(scene))
                 .chain(explain::sentence(&scene.settled))
-                .chain(difference(scene))
+                .chain(describe_difference(scene))
                 .map(|words| cell(&words))
                 .collect();
             let words = words.join("; ");
@@ -102,7 +102,7 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
 }
 
 /// Returns the score, such as `12.5 of 20`, or the reason why there are no points.
-fn score(grade: &Grade) -> String {
+fn format_score(grade: &Grade) -> String {
     let reached = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
     reached.or_else(|| no_points(grade)).unwrap_or_default()
 }

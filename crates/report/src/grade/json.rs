@@ -1,5 +1,5 @@
 //! The program's own JSON (`schemas/grade.schema.json`), with everything in a grade.
-use super::{super::explain::ExplanationView, phrases::NOT_GRADED, speed_words};
+use super::{super::explain::ExplanationView, describe_speed, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, plain};
 use crate::{
     check::CauseView,
@@ -198,7 +198,7 @@ view! {
         #[schemars(range(min = 0.0))]
         max_points: f64 = speed.marking.points,
         /// The measurement as a sentence.
-        text: String = plain(&speed_words(speed)),
+        text: String = plain(&describe_speed(speed)),
         /// The submission's minimum processor time, divided by the reference's.
         #[schemars(range(min = 0.0))]
         ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.ratio),

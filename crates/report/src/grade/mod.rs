@@ -26,18 +26,18 @@ pub fn json(grades: &[Grade]) -> String {
 }
 
 pub use causes::{AlikeScenes, by_cause};
-pub(crate) use causes::{example, is_told, rank};
+pub(crate) use causes::{clearest_scene, is_listed, rank};
 pub(crate) use changes::lines as change_lines;
 pub use class::class;
-pub(crate) use class::{ClassFigures, SharedMistake, frequent, hardest, never_ran, same_programs};
+pub(crate) use class::{ClassFigures, SharedMistake, find_frequent, find_hardest, never_ran, same_programs};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
-pub use passed_over::{not_graded, warn_of};
-pub use phrases::{difference, format_points, head_lines, likely_mistakes, no_points, points, score};
+pub use passed_over::{add_warnings, not_graded};
+pub(crate) use phrases::{count_wrong, worth};
+pub use phrases::{describe_difference, format_points, head_lines, likely_mistakes, no_points, points, score};
 use phrases::{see_above, wrong_first};
-pub(crate) use phrases::{worth, wrong_scenes};
-pub(crate) use speed::speed_words;
+pub(crate) use speed::describe_speed;
 pub use text::{Advice, Text, TextDetail, extra, shorten_name, table as text_table};
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use crate::{
 use fosssim_findings::{Grade, PassedOver};
 
 /// Adds a warning about each skipped entry to the only grade, because a report on one submission has no list of others.
-pub fn warn_of(grades: &mut [Grade], passed_over: &[PassedOver]) {
+pub fn add_warnings(grades: &mut [Grade], passed_over: &[PassedOver]) {
     if let [grade] = grades {
         let words = |entry: &PassedOver| format!("passed over {}: {}", entry.name, entry.why);
         grade.warnings.extend(passed_over.iter().map(words));

@@ -14,10 +14,10 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
         return vec![unfit];
     }
-    let wrong = wrong_scenes(grade);
+    let wrong = count_wrong(grade);
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
-        let what = words::explanation::what_or(&mistake) + &note(grade, &mistake);
+        let what = words::explanation::what_or(&mistake) + &describe_note(grade, &mistake);
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }
@@ -36,12 +36,12 @@ pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
 }
 
 /// Returns the course's note on a mistake, to follow the report's text; empty if there is none.
-pub(crate) fn note(grade: &Grade, mistake: &Explanation) -> String {
+pub(crate) fn describe_note(grade: &Grade, mistake: &Explanation) -> String {
     grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
 /// Returns the number of scenes for which an explanation is searched, with their noun.
-pub(crate) fn wrong_scenes(grade: &Grade) -> String {
+pub(crate) fn count_wrong(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     format_count(wrong.count() as u64, "wrong scene")
 }
@@ -63,7 +63,7 @@ pub(super) fn wrong_first<'a>(groups: impl Iterator<Item = &'a GroupGrade>) -> V
 
 /// Returns the sentence about a scene that the two rule books judge differently.
 #[must_use]
-pub fn difference(scene: &SceneGrade) -> Option<String> {
+pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
     scene.differs.map(|cause| {
         let verdicts = if cause.original_fails() {
             "the original rejects it, the fair rules accept it"

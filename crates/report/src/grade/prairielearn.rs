@@ -1,6 +1,6 @@
 //! PrairieLearn's results.json: a score from 0 to 1. `gradable: false` stands for errors of the grader and for uploads
 //! without a runnable program, which do not count as an attempt.
-use super::{super::explain, difference, head_lines, score, see_above, speed_words};
+use super::{super::explain, describe_difference, describe_speed, head_lines, score, see_above};
 use crate::foreign::{clean_output, one_line, plain};
 use crate::{style::Style, view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
@@ -8,7 +8,7 @@ use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 
 /// The maximum length of a text, far below the megabyte that PrairieLearn accepts.
-const LONGEST_TEXT: usize = 4000;
+const MAX_TEXT_LENGTH: usize = 4000;
 
 #[derive(Serialize)]
 struct Results {
@@ -58,16 +58,16 @@ pub(crate) fn render(grade: &Grade) -> String {
             points: scene.points,
             max_points: scene.max_points,
             message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summary(scene)) },
-            output: cut(&output(scene)),
+            output: cut(&describe_scene(scene)),
         })
         .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
             Test {
                 name: format!("speed ({})", one_line(&group.name)),
                 group: one_line(&group.name),
-                description: "processor time beside the reference's".to_owned(),
+                description: "processor time compared with the reference's".to_owned(),
                 points: speed.points,
                 max_points: speed.marking.points,
-                message: cut(&speed_words(speed)),
+                message: cut(&describe_speed(speed)),
                 output: String::new(),
             }
         }))
@@ -92,7 +92,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             // The verdict must not reveal groups that students do not see.
             verdict if shown.groups.len() == grade.groups.len() => verdict.name().to_owned(),
             _ => format!(
-                "{} on the tests shown here ({}); the grade has others, too",
+                "{} on the tests shown here ({}); other tests are hidden",
                 shown.verdict,
                 score(shown.points.unwrap_or_default(), shown.max_points)
             ),
@@ -122,8 +122,8 @@ pub(crate) fn render(grade: &Grade) -> String {
 }
 
 /// Returns everything about a scene except for its message.
-fn output(scene: &SceneGrade) -> String {
-    let mut lines: Vec<String> = difference(scene).into_iter().collect();
+fn describe_scene(scene: &SceneGrade) -> String {
+    let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
     lines.extend(words::details(scene));
     lines.extend(explain::lines(&scene.settled, Style::Plain));
     lines.join("\n")
@@ -131,7 +131,7 @@ fn output(scene: &SceneGrade) -> String {
 
 fn cut(text: &str) -> String {
     let text = plain(text);
-    match text.char_indices().nth(LONGEST_TEXT) {
+    match text.char_indices().nth(MAX_TEXT_LENGTH) {
         Some((end, _)) => format!("{} [cut short]", &text[..end]),
         None => text,
     }

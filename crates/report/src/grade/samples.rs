@@ -33,7 +33,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
 
 fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupGrade {
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
-    score::group(
+    score::grade_group(
         name,
         Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, extra: false, speed: None },
         scenes,

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 const KEY: &str = "\u{1}";
 
 /// The placeholder for the common cause of all scenes, which is known later.
-const CAUSE: &str = "\u{2}";
+const CAUSE_MARK: &str = "\u{2}";
 
 /// A card.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ pub struct Card {
 }
 
 /// The minimum size of motions that are rounded, in bytes.
-const SMALL: usize = 60_000;
+const MIN_ROUNDED_BYTES: usize = 60_000;
 
 impl Card {
     /// Returns the card of a case below a heading of level `depth`; `None` if hints forbid it.
@@ -34,9 +34,9 @@ impl Card {
         let blocks =
             |precision| case.evidence.map(|evidence| data::blocks(case, evidence, KEY, precision)).unwrap_or_default();
         let data = blocks(Precision::AsRoomAllows);
-        let rounded = if data.len() > SMALL { blocks(Precision::Rounded) } else { String::new() };
+        let rounded = if data.len() > MIN_ROUNDED_BYTES { blocks(Precision::Rounded) } else { String::new() };
         let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
-        Some(Self { html: case.trace_part(KEY, depth, CAUSE), data, rounded })
+        Some(Self { html: case.trace_part(KEY, depth, CAUSE_MARK), data, rounded })
     }
 
     /// Returns a card that contains only text.
@@ -47,19 +47,19 @@ impl Card {
 
     /// Returns the card with a remark above its content.
     #[must_use]
-    pub fn noting(self, words: &str) -> Self {
+    pub fn with_remark(self, words: &str) -> Self {
         Self { html: Self::from_words(words).html + &self.html, ..self }
     }
 
     /// Returns the card in its stored form.
     #[must_use]
-    pub fn to_kept(&self) -> String {
+    pub fn to_stored(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
     /// Parses a card in its stored form.
     #[must_use]
-    pub fn from_kept(text: &str) -> Option<Self> {
+    pub fn from_stored(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }
 
@@ -70,13 +70,13 @@ impl Card {
 
     /// Returns whether the card shows the values of the first difference.
     pub(super) fn has_values(&self) -> bool {
-        self.html.contains(super::case::FIRST)
+        self.html.contains(super::case::FIRST_HEADING)
     }
 
     /// Renders the part without script, with its mistakes, under a key that is unique on the page.
     pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
         let html = self.html.replace(KEY, key);
-        if html.contains(CAUSE) { html.replace(CAUSE, mistakes) } else { mistakes.to_owned() + &html }
+        if html.contains(CAUSE_MARK) { html.replace(CAUSE_MARK, mistakes) } else { mistakes.to_owned() + &html }
     }
 
     /// Returns the exact motions as script text, with the key replaced by `key`.

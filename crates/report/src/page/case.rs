@@ -9,9 +9,10 @@ use crate::{
     check::{
         Check, advice,
         books::verdicts,
+        describe_problem,
         divergence::{self, Row, Value},
         first::{first, is_other_scene},
-        follows, headline, notes, problem,
+        follows, headline, notes,
     },
     describe::pair_key,
     explain::ExplanationParts,
@@ -30,10 +31,10 @@ use fosssim_num::{
 use fosssim_render::plot::{Embedding, PassPlot, ResidualPlot, STEPS_AXIS, Series};
 
 /// The maximum number of detection calls on a page.
-const CALLS: usize = 6;
+const MAX_CALLS: usize = 6;
 
 /// The heading of the first difference.
-pub(super) const FIRST: &str = "First difference";
+pub(super) const FIRST_HEADING: &str = "First difference";
 
 /// A detection call and the number of its step.
 type StepCall<'e> = (u32, &'e InspectedCall);
@@ -79,7 +80,7 @@ impl Case<'_> {
     fn describe_stop(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
-        let (place, message, advice) = problem(&stop, outcome);
+        let (place, message, advice) = describe_problem(&stop, outcome);
         let advice = advice.map(|advice| format!("<p>{advice}</p>")).unwrap_or_default();
         format!(
             "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}\
@@ -93,10 +94,10 @@ impl Case<'_> {
     fn proof(&self) -> Option<&'static str> {
         let what = self.what_if.filter(|_| self.hints == Hints::Full)?;
         Some(if what.equal {
-            "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
+            "Proof: the reference with exactly the likely mistake writes the same trace, bit for bit."
         } else {
-            "The reference with exactly the likely mistake writes other bytes, by round-off or by more: compare its \
-             motion with yours."
+            "The reference with exactly the likely mistake writes a different trace, by round-off or by more. \
+             Compare its motion with yours."
         })
     }
 }
@@ -146,9 +147,9 @@ impl TraceContent<'_> {
     fn render_some(&self, calls: &[StepCall<'_>], open: bool) -> String {
         let call =
             |(number, (step, one)): (usize, &StepCall<'_>)| call::html(*step, one, self.depth + 2, open && number == 0);
-        let mut out: String = calls.iter().take(CALLS).enumerate().map(call).collect();
-        if calls.len() > CALLS {
-            out += &format!("<p class=\"hint\">{} more are not shown.</p>\n", calls.len() - CALLS);
+        let mut out: String = calls.iter().take(MAX_CALLS).enumerate().map(call).collect();
+        if calls.len() > MAX_CALLS {
+            out += &format!("<p class=\"hint\">{} more are not shown.</p>\n", calls.len() - MAX_CALLS);
         }
         out
     }
@@ -162,14 +163,14 @@ impl TraceContent<'_> {
     /// Renders the plots of the error at the end of each step, and of the detection passes.
     fn plots(&self, evidence: &Evidence) -> String {
         let (key, first) = (self.key, self.case.first().map(|first| first.step));
-        let tolerance = bound(evidence, self.check.rules.official());
+        let tolerance = state_bound(evidence, self.check.rules.official());
         let steps = evidence.steps.len();
         let positions: Vec<f64> = evidence.steps.iter().map(|step| step.position).collect();
         let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
         let series =
             [Series { name: "positions", values: &positions }, Series { name: "velocities", values: &velocities }];
         let residuals = ResidualPlot {
-            title: "How far each step ends from where it should",
+            title: "Error at the end of each step",
             series: &series,
             tolerance,
             mark: first.map(|step| (step, "first difference")),
@@ -213,18 +214,18 @@ fn subject(finding: &Finding) -> String {
             format!("the contact of {}", PairWords(expected.pair))
         }
         FindingDetail::MissedCollision { expected } => {
-            format!("{} collide, and the trace misses it", PairWords(expected.pair))
+            format!("{} collide, but the trace misses it", PairWords(expected.pair))
         }
         FindingDetail::Position { particle, .. } if finding.step > 0 => format!("where particle {particle} ends"),
         FindingDetail::Velocity { particle, .. } if finding.step > 0 => {
-            format!("the velocity with which particle {particle} ends")
+            format!("the velocity of particle {particle} at the end")
         }
         _ => finding.what().to_string(),
     }
 }
 
 /// Returns two values side by side as HTML, in one notation, and marked from the first digit that differs.
-fn cells(row: &Row) -> (String, String) {
+fn compare_cells(row: &Row) -> (String, String) {
     match (row.expected, row.actual) {
         (Value::Number(expected), Value::Number(actual)) => mark_difference(expected, actual, row.differs),
         // A single value is as short as others.
@@ -247,7 +248,7 @@ pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> S
 }
 
 /// Returns the first sentence, which is the heading, and the general rule after it.
-fn lead(what: &str) -> (String, Option<&str>) {
+fn split_lead(what: &str) -> (String, Option<&str>) {
     match what.split_once(". ") {
         Some((lead, more)) if !more.is_empty() => (format!("{lead}."), Some(more)),
         _ => (what.to_owned(), None),
@@ -261,7 +262,7 @@ fn pair_of(finding: &Finding) -> String {
 
 /// Returns the bound beyond which a book rejects a state. By the fair rules the bound grows with the numbers; the
 /// returned bound is that of the largest numbers.
-fn bound(evidence: &Evidence, book: Book) -> f64 {
+fn state_bound(evidence: &Evidence, book: Book) -> f64 {
     match book {
         Book::Parity => PARITY_MAXIMUM,
         Book::Fair => {

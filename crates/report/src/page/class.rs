@@ -1,17 +1,17 @@
 //! The page of a class: the points of all submissions, the hardest scenes, and the submissions with the same mistake.
 use super::{
     document,
-    graded::key,
+    graded::scene_key,
     heat, histogram,
     markup::{count_scenes, data, note},
     render_template,
-    smallest::{parts, pre},
+    smallest::{format_pre, parts},
 };
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, example, format_points, frequent, hardest, likely_mistakes, never_ran, points,
-        same_programs,
+        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, format_points, likely_mistakes,
+        never_ran, points, same_programs,
     },
     smallest::title,
     words::{self, explanation::what_or},
@@ -24,13 +24,13 @@ use std::collections::BTreeMap;
 const SCRIPT: &str = include_str!("class.js");
 
 /// The maximum number of characters of a likely mistake or a summary in a table.
-const SHORT: usize = 120;
+const MAX_SUMMARY_LENGTH: usize = 120;
 
 /// The maximum number of shared mistakes that are not folded, so that the table begins on the first screen.
-const FEW: usize = 5;
+const MAX_UNFOLDED: usize = 5;
 
 /// The maximum number of listed names of a cluster.
-const NAMES: usize = 400;
+const MAX_NAMES: usize = 400;
 
 /// The grades of a class.
 #[derive(Clone, Copy)]
@@ -49,10 +49,10 @@ impl ClassPage<'_> {
     pub fn html(&self) -> String {
         let content = ClassContent {
             class: self,
-            mistakes: frequent(self.grades),
+            mistakes: find_frequent(self.grades),
             is_compared: self.grades.iter().any(|grade| grade.before.is_some()),
         };
-        document(&format!("Class: {}", suite(self.grades)), &render_template(&content), SCRIPT)
+        document(&format!("Class: {}", suite_name(self.grades)), &render_template(&content), SCRIPT)
     }
 }
 
@@ -85,7 +85,7 @@ struct Cluster<'a> {
 impl ClassContent<'_> {
     /// Returns the address of a scene on a submission's page.
     fn address(&self, grade: &Grade, scene: &str) -> String {
-        format!("{}#scene-{}", (self.class.page)(grade), key(scene))
+        format!("{}#scene-{}", (self.class.page)(grade), scene_key(scene))
     }
 
     /// Returns the names of submissions, to be copied into a letter.
@@ -96,7 +96,7 @@ impl ClassContent<'_> {
 
     /// Returns the filters by verdict that match some submissions, each with the number of matches.
     fn states(&self) -> impl Iterator<Item = (&'static str, &'static str, usize)> {
-        let count = |wanted: &str| self.class.grades.iter().filter(|grade| state(grade) == wanted).count();
+        let count = |wanted: &str| self.class.grades.iter().filter(|grade| submission_state(grade) == wanted).count();
         let states = [
             ("good", "accepted", count("good")),
             ("bad", "not accepted", count("bad")),
@@ -118,7 +118,7 @@ impl ClassContent<'_> {
         let named = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.len() > 1);
         let named = named.map(|(number, SharedMistake { mistake, members })| {
             let first = &grades[members[0]];
-            let scene = example(first, mistake);
+            let scene = clearest_scene(first, mistake);
             let smallest = members.iter().flat_map(|&number| &grades[number].smallest);
             Cluster {
                 heading: one_line(&what_or(mistake)),
@@ -136,10 +136,10 @@ impl ClassContent<'_> {
             let wrong: Vec<&SceneGrade> = grades[members[0]].scenes().filter(|scene| is_failed(scene)).collect();
             let first = format!("{}: {}", wrong[0].scene, words::summary(wrong[0]));
             let heading = match wrong.len() {
-                1 => "No mistake is named, but the same scene fails in the same words".to_owned(),
-                count => format!("No mistake is named, but the same {count} scenes fail in the same words"),
+                1 => "No mistake is named, but the same scene fails for the same reason".to_owned(),
+                count => format!("No mistake is named, but the same {count} scenes fail for the same reason"),
             };
-            Cluster { heading, members, first: Some(short(&one_line(&first))), ..Cluster::default() }
+            Cluster { heading, members, first: Some(shorten(&one_line(&first))), ..Cluster::default() }
         });
         named.chain(same).collect()
     }
@@ -147,7 +147,7 @@ impl ClassContent<'_> {
     /// Returns the submissions with the same program, group by group.
     fn same_programs(&self) -> Vec<Cluster<'_>> {
         let cluster = |members: Vec<usize>| {
-            let heading = short(&self.names(&members));
+            let heading = shorten(&self.names(&members));
             Cluster { heading, members, ..Cluster::default() }
         };
         same_programs(self.class.grades).into_iter().map(cluster).collect()
@@ -161,19 +161,19 @@ impl ClassContent<'_> {
 }
 
 /// Returns the name of the suite.
-fn suite(grades: &[Grade]) -> &str {
+fn suite_name(grades: &[Grade]) -> &str {
     grades.first().map_or("", |grade| grade.suite.as_str())
 }
 
 /// Returns the names of the scenes, in the form that the script reads.
-fn scenes(grades: &[Grade]) -> String {
+fn scene_names(grades: &[Grade]) -> String {
     let names: Vec<&str> =
         grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
     data(&serde_json::json!(names))
 }
 
 /// Returns points in the form by which the script sorts.
-fn sort(points: Option<f64>) -> String {
+fn sort_key(points: Option<f64>) -> String {
     points.map_or_else(String::new, |points| points.to_string())
 }
 
@@ -188,7 +188,7 @@ fn accepted_of(grade: &Grade) -> usize {
 }
 
 /// Returns the likely mistakes of a submission, or the reason why it is not accepted.
-fn reason(grade: &Grade) -> String {
+fn describe_reason(grade: &Grade) -> String {
     let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
     let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
     if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") }
@@ -210,8 +210,8 @@ fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
 }
 
 /// Returns the beginning of a long text.
-fn short(words: &str) -> String {
-    let cut: String = words.chars().take(SHORT).collect();
+fn shorten(words: &str) -> String {
+    let cut: String = words.chars().take(MAX_SUMMARY_LENGTH).collect();
     if cut.len() < words.len() { cut + "..." } else { cut }
 }
 
@@ -221,7 +221,7 @@ fn is_failed(scene: &SceneGrade) -> bool {
 }
 
 /// Returns the state of a submission, by which rows are filtered and colored.
-fn state(grade: &Grade) -> &'static str {
+fn submission_state(grade: &Grade) -> &'static str {
     match grade {
         _ if grade.verdict.is_accepted() => "good",
         _ if never_ran(grade) => "none",
@@ -246,15 +246,15 @@ fn letter_of(scene: &SceneGrade) -> char {
 }
 
 /// Returns the statistics of the class, each with its name.
-fn figures(grades: &[Grade]) -> Vec<(String, String)> {
+fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_points);
-    let unsolved = hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
+    let unsolved = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     let rows = [
         (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", points(figures.max_points))),
-        (median, "median; both count those that ran".to_owned()),
+        (median, "median, of submissions that were run".to_owned()),
         (unsolved.to_string(), "scenes without a right answer".to_owned()),
     ];
     let since =
@@ -280,7 +280,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
 }
 
 /// Renders the histogram of points.
-fn bars(grades: &[Grade]) -> String {
+fn render_bars(grades: &[Grade]) -> String {
     histogram::html(grades.iter().filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
 
@@ -314,7 +314,7 @@ mod tests {
                     };
                     (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, why), false)
                 });
-                score::group(&format!("Group {group}"), marking, scenes.collect())
+                score::grade_group(&format!("Group {group}"), marking, scenes.collect())
             })
             .collect();
         Grade {
@@ -375,7 +375,7 @@ mod tests {
         assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("<b>2</b>"), "{cluster}");
         assert!(cluster.contains("eve") && cluster.contains("&lt;b&gt;kim") && !cluster.contains("bob"), "{cluster}");
         assert!(html.contains("<td class=\"num\" data-sort=\"3\">3</td>"), "three fail the last scenes");
-        let last = key("Group/a-scene-of-number-75");
+        let last = scene_key("Group/a-scene-of-number-75");
         assert!(html.contains(&format!("<a href=\"reports/eve.html#scene-{last}\">Group/a-scene-of-number-75</a>")));
         let bars = html.split("aria-label=\"Points of the class: ").nth(1).expect("a histogram");
         assert!(bars.starts_with("0 to 10 %: 1, ") && bars.contains("90 to 100 %: 1\""), "{bars:.300}");

@@ -5,14 +5,14 @@ use super::{
     document,
     markup::{count_scenes, note, text},
     render_template,
-    room::{self, OUTPUTS, Room},
+    room::{self, OUTPUT_BUDGET, Room},
     script, smallest,
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        by_cause, change_lines, difference, example, extra, format_points, is_told, likely_mistakes, no_points, points,
-        score, speed_words, worth, wrong_scenes,
+        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_speed, extra, format_points,
+        is_listed, likely_mistakes, no_points, points, score, worth,
     },
     number::format_count,
     words,
@@ -27,7 +27,7 @@ use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 
 /// The maximum number of characters of a program's output in a scene.
-const OUTPUT: usize = 2_000;
+const MAX_OUTPUT_LENGTH: usize = 2_000;
 
 /// The readers of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -68,7 +68,7 @@ impl GradePage<'_> {
         let content = GradeContent {
             page: self,
             grade,
-            rooms: room::share_out(told.iter().map(|(_, card)| card.as_ref())),
+            rooms: room::distribute(told.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.unfit().is_none(),
             tells_who,
             columns: if tells_who { 6 } else { 5 },
@@ -127,7 +127,7 @@ impl GradeContent<'_> {
     fn smallest(&self) -> String {
         let card = |small: &SmallestScene| (self.page.card)(small.card.as_deref());
         let all = self.grade.smallest.iter().zip(1..);
-        all.map(|(small, number)| smallest::article(small, card(small).as_ref(), number)).collect()
+        all.map(|(small, number)| smallest::render_article(small, card(small).as_ref(), number)).collect()
     }
 
     /// Returns the cards of the listed scenes.
@@ -137,7 +137,7 @@ impl GradeContent<'_> {
 
     /// Returns the details of each listed scene, by cause.
     fn articles(&self) -> Vec<Vec<Article<'_>>> {
-        let mut outputs = if self.grade.shows_output { OUTPUTS } else { 0 };
+        let mut outputs = if self.grade.shows_output { OUTPUT_BUDGET } else { 0 };
         let told = self.told.iter().zip(&self.rooms);
         let mut articles = told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs));
         self.alike.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
@@ -145,7 +145,7 @@ impl GradeContent<'_> {
 
     /// Returns the number of accepted scenes that are not listed, and all scenes that are not listed.
     fn rest(&self) -> (usize, Vec<&SceneGrade>) {
-        let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_told(scene)).collect();
+        let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_listed(scene)).collect();
         (rest.iter().filter(|scene| scene.verdict.is_accepted()).count(), rest)
     }
 }
@@ -157,7 +157,7 @@ pub(super) fn render_located(found: &LocatedFailure) -> String {
 }
 
 /// Returns the sentence which rule book counts.
-fn books(grade: &Grade) -> String {
+fn describe_books(grade: &Grade) -> String {
     let other = format_count(grade.differing() as u64, "scene");
     match (grade.rules, grade.differing()) {
         (fosssim_judge::Rules::Parity, _) => "by the original's rules".to_owned(),
@@ -178,11 +178,11 @@ fn score_or_why(grade: &Grade) -> String {
 
 /// Returns the output of a build.
 fn printed_by(build: &Build) -> String {
-    render_output("What it printed", &build.output, &mut OUTPUTS.clone())
+    render_output("What it printed", &build.output, &mut OUTPUT_BUDGET.clone())
 }
 
 /// Returns the readers of groups with this visibility.
-const fn readers(visibility: Visibility) -> &'static str {
+const fn describe_readers(visibility: Visibility) -> &'static str {
     match visibility {
         Visibility::Visible => "everybody",
         Visibility::Hidden => "staff",
@@ -199,7 +199,7 @@ fn accepted_of(group: &GroupGrade) -> usize {
 impl<'a> Article<'a> {
     /// Creates the details of a scene, reduced to the remaining space for its card and its output.
     fn new(scene: &'a SceneGrade, card: Option<&Card>, room: Room, room_of_outputs: &mut usize) -> Self {
-        let key = key(&scene.scene);
+        let key = scene_key(&scene.scene);
         // A detail is not repeated if the card shows it with values.
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
         let details = words::details(scene).into_iter().skip(usize::from(is_shown));
@@ -218,13 +218,13 @@ impl<'a> Article<'a> {
         };
         let outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
             + &render_output("Standard error", &scene.stderr, room_of_outputs);
-        let lines = difference(scene).into_iter().chain(details).collect();
+        let lines = describe_difference(scene).into_iter().chain(details).collect();
         Self { scene, key, lines, shown, outputs, motion }
     }
 }
 
 /// Returns a key that is different for every name of a scene.
-pub(super) fn key(name: &str) -> String {
+pub(super) fn scene_key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
@@ -234,7 +234,7 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
         return String::new();
     }
     let output = without_codes(output);
-    let shown: String = output.chars().take(OUTPUT).collect();
+    let shown: String = output.chars().take(MAX_OUTPUT_LENGTH).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
     // The length counts after escaping, which makes hostile text longer.
     let shown = text(&shown);

@@ -19,15 +19,15 @@ pub(super) fn html(letters: &str) -> String {
             }
             place += run.len();
         }
-        draw(&mut svg, kind, &path);
+        draw_scenes(&mut svg, kind, &path);
     }
     let borders = letters.match_indices('|').enumerate().map(|(before, (at, _))| format!("M{} 0v1", at - before));
-    draw(&mut svg, "g", &borders.collect::<String>());
+    draw_scenes(&mut svg, "g", &borders.collect::<String>());
     svg + "</svg>"
 }
 
 /// Draws the scenes of one state, or the borders of groups.
-fn draw(svg: &mut String, kind: &str, path: &str) {
+fn draw_scenes(svg: &mut String, kind: &str, path: &str) {
     if !path.is_empty() {
         let _ = write!(svg, "<path class=\"h-{kind}\" d=\"{path}\"/>");
     }

@@ -2,17 +2,17 @@
 use std::fmt::Write;
 
 /// The number of bars.
-const BARS: usize = 10;
+const BAR_COUNT: usize = 10;
 
 /// The height of the highest bar, in pixels.
-const HEIGHT: usize = 108;
+const MAX_BAR_HEIGHT: usize = 108;
 
 /// Renders a histogram of shares of the points, from 0 to 1; empty without any.
 pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
-    let mut counts = [0_usize; BARS];
+    let mut counts = [0_usize; BAR_COUNT];
     for share in shares.filter(|share| share.is_finite()) {
         // The last bar that begins at or below the share; a share of 1 belongs to the last bar.
-        let bar = (1..BARS).filter(|&bar| share * BARS as f64 >= bar as f64).count();
+        let bar = (1..BAR_COUNT).filter(|&bar| share * BAR_COUNT as f64 >= bar as f64).count();
         counts[bar] += 1;
     }
     let most = counts.into_iter().max().unwrap_or(0);
@@ -28,7 +28,7 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {
-        let (left, height) = (10 + 31 * bar, HEIGHT * count / most);
+        let (left, height) = (10 + 31 * bar, MAX_BAR_HEIGHT * count / most);
         if count > 0 {
             let _ = write!(
                 svg,

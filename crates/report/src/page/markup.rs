@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// Returns text in which characters that are invisible, or change the direction of writing, are replaced by their code
 /// points.
-pub(super) fn visible(raw: &str) -> String {
+pub(super) fn show_hidden(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
         if c.is_control() && !matches!(c, '\n' | '\t') || is_unseen(c) {
@@ -21,7 +21,7 @@ pub(super) fn visible(raw: &str) -> String {
 /// Escapes visible text for an element or a quoted attribute.
 pub(super) fn text(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
-    for c in visible(raw).chars() {
+    for c in show_hidden(raw).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

@@ -9,19 +9,19 @@ use fosssim_evidence::{Evidence, Track};
 
 /// The maximum size of one case's exact motions on a page, in bytes. The largest course scene (11 particles, 1,601
 /// records) takes 384 KB with both of them.
-pub const EXACT: usize = 540_000;
+pub const MAX_EXACT_BYTES: usize = 540_000;
 
 /// The maximum size of raw motions that are compressed, in bytes; larger ones are rounded immediately.
-const TRIED: usize = 12 * EXACT;
+const MAX_COMPRESSED_BYTES: usize = 12 * MAX_EXACT_BYTES;
 
 /// The maximum number of exact values in a rounded motion, which are those around steps with details.
-const KEPT: usize = 16_000;
+const MAX_EXACT_VALUES: usize = 16_000;
 
 /// The number of units of rounded positions in the bodies' extent.
-const UNITS: f64 = 65536.0;
+const UNITS_PER_EXTENT: f64 = 65536.0;
 
 /// The mark of a value that is NaN, or too large to be a number of units.
-const BEYOND: i64 = 1 << 40;
+const NO_UNIT_MARK: i64 = 1 << 40;
 
 /// The precision of stored motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,15 +51,15 @@ pub(super) struct PackedMotions {
 impl PackedMotions {
     pub(super) fn from_evidence(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
         let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
-        if precision == Precision::AsRoomAllows && raw <= TRIED {
+        if precision == Precision::AsRoomAllows && raw <= MAX_COMPRESSED_BYTES {
             let blocks: Vec<String> = tracks.iter().map(|(_, track)| base64(&bytes(&track.values))).collect();
-            if blocks.iter().map(String::len).sum::<usize>() <= EXACT {
+            if blocks.iter().map(String::len).sum::<usize>() <= MAX_EXACT_BYTES {
                 return Self { blocks, rounded: None };
             }
         }
-        let rounded = Rounding { unit: unit(tracks, evidence.layout.particles), exact: exact(evidence) };
+        let rounded = Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: exact(evidence) };
         let blocks =
-            tracks.iter().map(|(_, track)| base64(&round(track, evidence.layout.particles, &rounded))).collect();
+            tracks.iter().map(|(_, track)| base64(&round_track(track, evidence.layout.particles, &rounded))).collect();
         Self { blocks, rounded: Some(rounded) }
     }
 }
@@ -74,7 +74,7 @@ fn base64(bytes: &[u8]) -> String {
 }
 
 /// Returns the unit of positions, a power of two, so that multiples are exact.
-fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
+fn position_unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (_, track) in tracks {
         for record in track.values.chunks_exact((4 * particles).max(1)) {
@@ -84,13 +84,13 @@ fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
         }
     }
     let extent = if high > low { high - low } else { 1.0 };
-    (extent / UNITS).log2().floor().exp2()
+    (extent / UNITS_PER_EXTENT).log2().floor().exp2()
 }
 
 /// Returns the indices of the records around steps with details, first those around the first wrong steps.
 fn exact(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
-    let room = KEPT / (4 * layout.particles).max(1);
+    let room = MAX_EXACT_VALUES / (4 * layout.particles).max(1);
     let per_step = layout.records_per_step() as usize;
     let mut records = Vec::new();
     for up in evidence.inspected.iter().filter(|up| up.step > window.first && up.step <= window.last) {
@@ -101,7 +101,7 @@ fn exact(evidence: &Evidence) -> Vec<usize> {
     records
 }
 
-fn round(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
+fn round_track(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
     let size = 4 * particles;
     let kept: Vec<usize> = rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
     let mut out = (kept.len() as u64).to_le_bytes().to_vec();
@@ -114,7 +114,7 @@ fn round(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
             let units = (value / rounded.unit).round();
             #[expect(clippy::cast_possible_truncation, reason = "it is below 2^40")]
             #[expect(clippy::cast_precision_loss, reason = "a power of two")]
-            let now = if units.abs() < BEYOND as f64 { units as i64 } else { BEYOND };
+            let now = if units.abs() < NO_UNIT_MARK as f64 { units as i64 } else { NO_UNIT_MARK };
             let difference = now - *last;
             *last = now;
             let mut code = ((difference << 1) ^ (difference >> 63)).cast_unsigned();
@@ -168,7 +168,7 @@ mod tests {
         let value = |k: usize| if k == 12 { f64::NAN } else { (k as f64 * 0.37).sin() * (1.0 + k as f64) };
         let all = evidence(3, 20, value);
         let Rounding { unit, .. } = pack(&all, Precision::Rounded).rounded.expect("rounded");
-        let bytes = round(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
+        let bytes = round_track(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
         assert_eq!(u64::from_le_bytes(bytes[..8].try_into().expect("eight")), 2);
         assert_eq!(bytes[8..8 + 96], super::bytes(&all.submission.values[24..36])[..]);
         let (mut at, mut last) = (8 + 2 * 96, [0_i64; 6]);
@@ -184,7 +184,7 @@ mod tests {
                 }
                 *last += (code >> 1).cast_signed() ^ -(code & 1).cast_signed();
                 match value.is_nan() {
-                    true => assert_eq!(*last, BEYOND),
+                    true => assert_eq!(*last, NO_UNIT_MARK),
                     false => assert!((*last as f64 * unit - value).abs() <= 0.5 * unit, "{value}"),
                 }
             }

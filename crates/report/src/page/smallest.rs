@@ -1,12 +1,12 @@
 //! The smallest scene for a cause, on a page: the scene, both motions, the differing values, and the computation by
 //! hand.
 use super::{Card, case::mistakes, markup::text, render_template};
-use crate::{smallest::title, words::first_divergence};
+use crate::{smallest::title, words::describe_first};
 use askama::Template;
 use fosssim_findings::smallest::SmallestScene;
 
 /// Renders a smallest scene, the `number`-th of its page, with its card if there is one.
-pub(super) fn article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
+pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
     let key = format!("small-{number}");
     let mistakes = mistakes(&small.explanations[..small.explanations.len().min(1)], card.is_some_and(Card::has_values));
     let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
@@ -32,6 +32,6 @@ pub(super) fn parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
 }
 
 /// Renders preformatted text.
-pub(super) fn pre(label: &str, words: &str) -> String {
+pub(super) fn format_pre(label: &str, words: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", text(words.trim_end()))
 }

@@ -7,7 +7,7 @@ use std::fmt::Write;
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 26.0;
 /// The maximum number of columns. More steps share columns, which show their worst step.
-const COLUMNS: usize = 480;
+const MAX_COLUMNS: usize = 480;
 
 /// Renders the strip, and its counts as text.
 pub(super) fn html(steps: &[Step]) -> String {
@@ -26,7 +26,7 @@ pub(super) fn html(steps: &[Step]) -> String {
         "<p>{words}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: \
          {words}\" preserveAspectRatio=\"none\">"
     );
-    let columns = steps.len().min(COLUMNS);
+    let columns = steps.len().min(MAX_COLUMNS);
     let worst = |column: usize| {
         let range = column * steps.len() / columns..(column + 1) * steps.len() / columns;
         steps[range].iter().map(|step| step.class).max_by_key(|class| severity(*class)).unwrap_or(StepClass::Unknown)

@@ -24,8 +24,8 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
         "all_bytes_read": !summary.trace.unread,
         "sha256": (!summary.trace.unread).then(|| summary.trace.sha256.to_string()),
         "trailing_bytes": summary.trace.trailing,
-        "damage": summary.trace.stopped.as_ref().map(place),
-        "oddities": { "count": summary.notes.0, "first": summary.notes.1.as_ref().map(place) },
+        "damage": summary.trace.stopped.as_ref().map(describe_place),
+        "oddities": { "count": summary.notes.0, "first": summary.notes.1.as_ref().map(describe_place) },
         "polynomials_per_pass": summary.polynomials_per_pass,
         "first_collisions": summary.collisions.iter().map(collision).collect::<Vec<_>>(),
     });
@@ -33,6 +33,6 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
 }
 
 /// Returns the damage of a trace and its place.
-pub(super) fn place(error: &TraceError) -> Value {
+pub(super) fn describe_place(error: &TraceError) -> Value {
     json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
 }

@@ -153,7 +153,7 @@ fn public_url(text: &str) -> Result<String, String> {
     let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();
     if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
-        return Err("an address must be https://HOST or http://HOST:PORT, without a path".to_owned());
+        return Err("an address must be https://HOST or http://HOST:PORT without a path".to_owned());
     }
     Ok(text.trim_end_matches('/').to_owned())
 }

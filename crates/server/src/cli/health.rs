@@ -4,7 +4,7 @@ use super::{arguments::HealthArguments, heartbeat};
 use std::time::Duration;
 
 /// The maximum time to wait for the server's answer.
-const PATIENCE: Duration = Duration::from_secs(5);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
 
 /// Prints the state of the server or worker, and returns whether it is healthy.
 pub(super) fn run(arguments: &HealthArguments) -> bool {
@@ -12,11 +12,11 @@ pub(super) fn run(arguments: &HealthArguments) -> bool {
         let alive = heartbeat::is_alive(&arguments.data);
         match alive {
             true => println!("alive"),
-            false => println!("no sign of life lately of a server or worker with --data {}", arguments.data.display()),
+            false => println!("no recent heartbeat of a server or worker with --data {}", arguments.data.display()),
         }
         return alive;
     };
-    let agent: ureq::Agent = ureq::Agent::config_builder().timeout_global(Some(PATIENCE)).build().into();
+    let agent: ureq::Agent = ureq::Agent::config_builder().timeout_global(Some(ANSWER_TIMEOUT)).build().into();
     match agent.get(format!("{server}/ready")).call() {
         Ok(_) => {
             println!("ready");

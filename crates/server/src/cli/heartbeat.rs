@@ -8,16 +8,16 @@ use std::{
 };
 
 /// The name of the heartbeat file in the data folder.
-const FILE: &str = "alive";
+const HEARTBEAT_FILE: &str = "alive";
 
 /// The time between two heartbeats, unless the watchdog requires a shorter one.
-const EVERY: Duration = Duration::from_secs(10);
+const BEAT_INTERVAL: Duration = Duration::from_secs(10);
 
 /// The maximum duration of a health check of the process.
-const PATIENCE: Duration = Duration::from_secs(10);
+const CHECK_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// The time without a heartbeat after which a process counts as dead.
-const SILENCE: Duration = Duration::from_secs(60);
+const MAX_SILENCE: Duration = Duration::from_secs(60);
 
 /// Reports that the process is ready.
 pub(super) fn say_ready() {
@@ -38,17 +38,17 @@ fn tell(state: &[NotifyState<'_>]) {
 /// Sends a heartbeat whenever a health check succeeds, forever.
 pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
     let watchdog = sd_notify::watchdog_enabled();
-    let every = watchdog.map_or(EVERY, |watchdog| (watchdog / 3).min(EVERY));
+    let every = watchdog.map_or(BEAT_INTERVAL, |watchdog| (watchdog / 3).min(BEAT_INTERVAL));
     loop {
-        match tokio::time::timeout(PATIENCE, is_well()).await {
+        match tokio::time::timeout(CHECK_TIMEOUT, is_well()).await {
             Ok(true) => {
                 if watchdog.is_some() {
                     tell(&[NotifyState::Watchdog]);
                 }
                 // A full disk must not cause a restart.
-                drop(fs::write(data.join(FILE), b""));
+                drop(fs::write(data.join(HEARTBEAT_FILE), b""));
             }
-            _ => tracing::warn!("no sign of life: the database does not answer"),
+            _ => tracing::warn!("no heartbeat is sent, because the database does not answer"),
         }
         tokio::time::sleep(every).await;
     }
@@ -56,6 +56,6 @@ pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
 
 /// Returns whether a process with this data folder has sent a heartbeat recently.
 pub(super) fn is_alive(data: &Path) -> bool {
-    let touched = fs::metadata(data.join(FILE)).and_then(|data| data.modified());
-    touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < SILENCE))
+    let touched = fs::metadata(data.join(HEARTBEAT_FILE)).and_then(|data| data.modified());
+    touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < MAX_SILENCE))
 }

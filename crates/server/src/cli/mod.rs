@@ -65,7 +65,7 @@ fn until_signalled() -> Result<CancellationToken> {
                 std::process::exit(130);
             }
             heartbeat::say_stopping();
-            tracing::info!("stopping; jobs are given back (once more to stop immediately)");
+            tracing::info!("stopping; jobs are returned to the queue (press again to stop immediately)");
             cancelled.cancel();
         }
     });

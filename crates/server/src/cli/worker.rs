@@ -30,9 +30,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     let folders = ServiceFolders::find_database(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
-        bail!(
-            "the tables of {address} are not those of this version: start the server first, it brings them up to date"
-        );
+        bail!("the tables of {address} have another version; start the server first, which updates them");
     }
     let store = folders.store(&arguments.place)?;
     let notifier = Notifier::default();
@@ -42,11 +40,11 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         store,
         notifier,
         policy: policy(&arguments.work),
-        grader: grader(arguments.work.grader.as_deref())?,
+        grader: find_grader(arguments.work.grader.as_deref())?,
     };
     heartbeat::say_ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_well().await));
+    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_healthy().await));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())
@@ -61,7 +59,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
         bail!("{} holds no worker's token (fsw_...)", token_file.display());
     }
-    let grader = grader(arguments.work.grader.as_deref())?;
+    let grader = find_grader(arguments.work.grader.as_deref())?;
     let folders = ServiceFolders::open(&arguments.place)?;
     let name = unique_name(arguments.name.as_deref());
     folders.clear()?;
@@ -82,7 +80,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
 
 /// Makes a worker's name unique, by adding the process number.
 fn unique_name(name: Option<&str>) -> String {
-    let name = strip_controls(name.map_or_else(host, str::to_owned).as_str());
+    let name = strip_controls(name.map_or_else(host_name, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
 }
 
@@ -98,13 +96,13 @@ pub(super) fn policy(work: &WorkloadArguments) -> QueuePolicy {
 }
 
 /// Returns the given grader, or the one in the folder of this program.
-pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
+pub(super) fn find_grader(named: Option<&Path>) -> Result<PathBuf> {
     let path = match named {
         Some(path) => path.to_owned(),
         None => std::env::current_exe()?.with_file_name("fosssim-oracle"),
     };
     if !path.is_file() {
-        bail!("no grader at {}: build fosssim-oracle, or name it by --grader", path.display());
+        bail!("there is no grader at {}; build fosssim-oracle, or choose it with --grader", path.display());
     }
     std::path::absolute(&path).context("the grader's path")
 }
@@ -148,7 +146,7 @@ impl LocalWorkers {
     }
 }
 
-fn host() -> String {
+fn host_name() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
 }
 

@@ -22,7 +22,7 @@ impl FromStr for Address {
         match file {
             Some(file) => Ok(Self::Sqlite(file.into())),
             // The text may hold a password, so the error does not repeat it.
-            None => Err("a database is sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME".to_owned()),
+            None => Err("a database must be sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME".to_owned()),
         }
     }
 }

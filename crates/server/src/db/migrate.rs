@@ -42,7 +42,7 @@ const MIGRATIONS: [(&str, &str); 29] = [
 pub const LATEST: i64 = MIGRATIONS.len() as i64;
 
 /// PostgreSQL's number of the lock that prevents two servers from migrating in parallel; an arbitrary number.
-const LOCK: i64 = 0x6673_6f5f_6d69_6772;
+const LOCK_NUMBER: i64 = 0x6673_6f5f_6d69_6772;
 
 /// The reason why the tables can't be updated.
 #[derive(Debug, Error)]
@@ -96,7 +96,7 @@ pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
     let mut transaction = database.begin().await?;
     if transaction.dialect() == Dialect::Postgres {
         // The lock is held until the transaction ends.
-        transaction.rows("SELECT CAST(pg_advisory_xact_lock(?) AS TEXT) AS held", values![LOCK]).await?;
+        transaction.rows("SELECT CAST(pg_advisory_xact_lock(?) AS TEXT) AS held", values![LOCK_NUMBER]).await?;
     }
     transaction
         .script(

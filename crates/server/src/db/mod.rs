@@ -35,13 +35,13 @@ use std::{
 use tokio::sync::Semaphore;
 
 /// The maximum time that a statement waits for a connection, or for SQLite's only writer.
-const PATIENCE: Duration = Duration::from_secs(30);
+const WAIT_LIMIT: Duration = Duration::from_secs(30);
 
 /// The maximum number of connections to PostgreSQL per process.
-const CONNECTIONS: u32 = 10;
+const MAX_CONNECTIONS: u32 = 10;
 
 /// The number of connections that are reserved for requests with priority.
-const FOR_THE_FIRST: u32 = 3;
+const PRIORITY_CONNECTIONS: u32 = 3;
 
 /// The statement that begins a transaction in PostgreSQL. A process that hangs in a transaction must not keep its
 /// locks, and no statement may wait forever. The settings end with the transaction, as a pooler requires.
@@ -106,7 +106,7 @@ impl Database {
         let turns = match address {
             // The writer's queue stays short, so that a request with priority waits for at most one other.
             Address::Sqlite(_) => 1,
-            Address::Postgres(_) => CONNECTIONS - FOR_THE_FIRST,
+            Address::Postgres(_) => MAX_CONNECTIONS - PRIORITY_CONNECTIONS,
         };
         let faults = Faults::default();
         let good = faults.clone();
@@ -121,7 +121,7 @@ impl Database {
                     .foreign_keys(true)
                     // Overwrite removed rows.
                     .pragma("secure_delete", "ON")
-                    .busy_timeout(PATIENCE)
+                    .busy_timeout(WAIT_LIMIT)
                     .disable_statement_logging();
                 let pool = |connections| {
                     let good = good.clone();
@@ -130,7 +130,7 @@ impl Database {
                             Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
                         })
                         .max_connections(connections)
-                        .acquire_timeout(PATIENCE)
+                        .acquire_timeout(WAIT_LIMIT)
                         .idle_timeout(None)
                         .max_lifetime(None)
                 };
@@ -142,8 +142,8 @@ impl Database {
                     .before_acquire(move |connection, about| {
                         Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
                     })
-                    .max_connections(CONNECTIONS)
-                    .acquire_timeout(PATIENCE)
+                    .max_connections(MAX_CONNECTIONS)
+                    .acquire_timeout(WAIT_LIMIT)
                     .connect_with(postgres_options(url)?)
                     .await?;
                 Engine::Postgres(pool)
@@ -165,7 +165,7 @@ impl Database {
         if self.goes_first {
             return Ok(None);
         }
-        let turn = tokio::time::timeout(PATIENCE, self.turns.clone().acquire_owned()).await;
+        let turn = tokio::time::timeout(WAIT_LIMIT, self.turns.clone().acquire_owned()).await;
         Ok(turn.map_err(|_| sqlx::Error::PoolTimedOut)?.ok())
     }
 
@@ -206,7 +206,7 @@ impl Database {
         loop {
             let tried = Instant::now();
             match self.begin().await {
-                Err(error) if error.is_transient() && tried.elapsed() >= PATIENCE && begun.elapsed() < patience => {}
+                Err(error) if error.is_transient() && tried.elapsed() >= WAIT_LIMIT && begun.elapsed() < patience => {}
                 other => return other,
             }
         }
@@ -214,7 +214,7 @@ impl Database {
 
     /// Returns whether the database answers and has no tables of a newer program. If it has, nothing is written from
     /// then on.
-    pub async fn is_well(&self) -> bool {
+    pub async fn is_healthy(&self) -> bool {
         let version = version(self).await;
         if version.as_ref().is_ok_and(|version| *version > LATEST) {
             self.is_outdated.store(true, Ordering::Relaxed);

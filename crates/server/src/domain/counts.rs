@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 use tokio::sync::Mutex;
 
 /// The time for which an answer is reused.
-const FRESH: Duration = Duration::from_secs(1);
+const MAX_AGE: Duration = Duration::from_secs(1);
 
 /// The last answer.
 #[derive(Debug, Default)]
@@ -21,7 +21,7 @@ impl Counts {
     pub(super) async fn read(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()
-            && at.elapsed() < FRESH
+            && at.elapsed() < MAX_AGE
         {
             return Ok(metrics.clone());
         }

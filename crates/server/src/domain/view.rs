@@ -5,7 +5,7 @@ use crate::{
     health,
     late::Lateness,
     queue::{self, Lane, Progress},
-    shown::{ShownGrade, hour},
+    shown::{ShownGrade, round_to_hour},
     store::Artifact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
@@ -332,7 +332,7 @@ impl FromRow for Submission {
             state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
             ahead: None,
             expected_seconds: None,
-            progress: progress(row)?,
+            progress: read_progress(row)?,
             grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
             is_withheld: false,
             is_published: row.maybe_int("published_at")?.is_some(),
@@ -345,7 +345,7 @@ impl FromRow for Submission {
 }
 
 /// Returns the progress of a job, if it runs and its worker reports it.
-fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
+fn read_progress(row: &Row) -> Result<Option<Progress>, DbError> {
     let is_running = row.maybe_text("state")?.as_deref() == Some("running");
     let read = |column| Ok::<_, DbError>(row.maybe_int(column)?.and_then(|number| u32::try_from(number).ok()));
     Ok(read("scenes_done")?.zip(read("scenes")?).filter(|_| is_running).map(|(done, all)| Progress { done, all }))
@@ -373,7 +373,7 @@ pub(super) async fn submissions_of(
 }
 
 /// The number of submissions that are read in one statement.
-const PAGE: i64 = 500;
+const PAGE_SIZE: i64 = 500;
 
 /// Returns a page of the submissions to an assignment after a number, oldest first; empty after the last.
 pub(super) async fn submissions_after(
@@ -382,7 +382,7 @@ pub(super) async fn submissions_after(
     after: i64,
 ) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.assignment = ? AND submission.id > ? ORDER BY submission.id LIMIT ?");
-    transaction.all(statement, values![assignment, after, PAGE]).await
+    transaction.all(statement, values![assignment, after, PAGE_SIZE]).await
 }
 
 /// Returns the submissions with the given numbers.
@@ -463,7 +463,7 @@ pub(super) async fn history(
         }
         Ok(read_row!(row => History {
             reason, by = "login", result, version, grader;
-            changed_at: if withheld { hour(row.int("changed_at")?) } else { row.int("changed_at")? },
+            changed_at: if withheld { round_to_hour(row.int("changed_at")?) } else { row.int("changed_at")? },
             old_code,
             old_points,
             new_code,

@@ -25,25 +25,25 @@ pub(crate) mod scope {
 }
 
 /// The maximum time to wait for a platform's answer.
-const PATIENCE: Duration = Duration::from_secs(20);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// The maximum size of an answer, in bytes.
 const ANSWER: u64 = 8 << 20;
 
 /// The lifetime of this service's assertions, in seconds.
-const ASSERTION: u64 = 300;
+const ASSERTION_LIFETIME: u64 = 300;
 
 /// The time before expiry at which tokens are renewed.
-const MARGIN: Duration = Duration::from_secs(30);
+const RENEWAL_MARGIN: Duration = Duration::from_secs(30);
 
 /// The maximum wait that a platform can request.
-const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+const MAX_WAIT: Duration = Duration::from_secs(3600);
 
 /// The reason why a platform did not fulfill a request.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
     /// The platform does not answer, or is overloaded; a later request may succeed.
-    #[error("it does not answer as it should: {why}")]
+    #[error("it returned an unexpected answer: {why}")]
     Away {
         /// The platform's message, or a description of the error.
         why: String,
@@ -134,7 +134,7 @@ struct Token {
 
 impl Client {
     pub(super) fn new(over_http: bool) -> Self {
-        Self { agent: net::agent(over_http, PATIENCE), over_http, tokens: Mutex::default() }
+        Self { agent: net::agent(over_http, ANSWER_TIMEOUT), over_http, tokens: Mutex::default() }
     }
 
     /// Reads a file that a platform publishes.
@@ -148,7 +148,7 @@ impl Client {
             let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "somewhere else".to_owned());
             return Err(ServiceFault::Refused(format!(
-                "its service is on {host}, which is not one of the platform's hosts: an administrator may add it"
+                "its service is on {host}, which is not one of the platform's hosts; an administrator can add it"
             )));
         };
         let (agent, ask) = (self.agent.clone(), ask.clone());
@@ -184,13 +184,13 @@ impl Client {
             return Ok(token.clone());
         }
         let settings = &platform.settings;
-        let now = now();
+        let now = now_seconds();
         let assertion = keys::signing_key(database).await?.sign(&json!({
             "iss": settings.client_id,
             "sub": settings.client_id,
             "aud": settings.audience.as_ref().unwrap_or(&settings.token_url),
             "iat": now,
-            "exp": now + ASSERTION,
+            "exp": now + ASSERTION_LIFETIME,
             "jti": secret::random_hex(),
         }))?;
         let body = url::form_urlencoded::Serializer::new(String::new())
@@ -209,7 +209,7 @@ impl Client {
         if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
             return Err(ServiceFault::Refused("its token is invalid".to_owned()));
         }
-        let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(MARGIN);
+        let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(RENEWAL_MARGIN);
         let kept = (token.access_token.clone(), Instant::now() + lasts);
         self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, kept);
         Ok(token.access_token)
@@ -217,7 +217,7 @@ impl Client {
 }
 
 /// Returns the number of seconds since 1970.
-pub(super) fn now() -> u64 {
+pub(super) fn now_seconds() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
 }
 
@@ -240,5 +240,5 @@ fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) ->
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::from_outage)?;
-    Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(LONGEST_WAIT)) })
+    Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(MAX_WAIT)) })
 }

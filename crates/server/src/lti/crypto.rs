@@ -14,7 +14,7 @@ use ring::{
 use serde::{Serialize, de::DeserializeOwned};
 
 /// The maximum difference between clocks, in seconds.
-pub(super) const LEEWAY: u64 = 60;
+pub(super) const CLOCK_LEEWAY: u64 = 60;
 
 struct Rs256Signer(RsaKeyPair);
 
@@ -101,7 +101,7 @@ pub(super) fn verify<T: DeserializeOwned + Clone>(
 ) -> Result<T, Error> {
     install();
     let mut validation = Validation::new(Algorithm::RS256);
-    validation.leeway = LEEWAY;
+    validation.leeway = CLOCK_LEEWAY;
     validation.validate_nbf = true;
     validation.set_required_spec_claims(&["exp", "iss", "aud", "sub"]);
     validation.set_issuer(&[issuer]);

@@ -11,10 +11,10 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 /// The number of bits of a key, which every platform accepts.
-const BITS: usize = 2048;
+const KEY_BITS: usize = 2048;
 
 /// The time for which a new key is published before it signs, in milliseconds.
-const FIRST_TOLD: i64 = 3600 * 1000;
+const PUBLICATION_TIME: i64 = 3600 * 1000;
 
 /// A key of the service.
 pub(super) struct SigningKey {
@@ -35,7 +35,7 @@ impl SigningKey {
 ///
 /// An error of the database.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
-    let made = tokio::task::spawn_blocking(make).await.map_err(|error| DbError::Other(error.to_string()))?;
+    let made = tokio::task::spawn_blocking(generate).await.map_err(|error| DbError::Other(error.to_string()))?;
     let (private, modulus, exponent) = made?;
     let mut transaction = database.begin().await?;
     let statement =
@@ -48,9 +48,9 @@ pub async fn new_key(database: &Database) -> Result<(), DbError> {
     transaction.commit().await
 }
 
-fn make() -> Result<(String, String, String), DbError> {
-    let other = |error: String| DbError::Other(format!("no key can be made: {error}"));
-    let key = RsaPrivateKey::new(&mut OsRng, BITS).map_err(|error| other(error.to_string()))?;
+fn generate() -> Result<(String, String, String), DbError> {
+    let other = |error: String| DbError::Other(format!("no key can be created: {error}"));
+    let key = RsaPrivateKey::new(&mut OsRng, KEY_BITS).map_err(|error| other(error.to_string()))?;
     let der = key.to_pkcs1_der().map_err(|error| other(error.to_string()))?;
     let text = |bytes: &[u8]| URL_SAFE_NO_PAD.encode(bytes);
     Ok((text(der.as_bytes()), text(&key.n().to_bytes_be()), text(&key.e().to_bytes_be())))
@@ -60,7 +60,7 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
     let statement = "SELECT kid, private_key, modulus, exponent,
            CAST(CASE WHEN created_at <= {now} - ? THEN 1 ELSE 0 END AS {int}) AS is_known
         FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC";
-    transaction.rows(statement, values![FIRST_TOLD]).await
+    transaction.rows(statement, values![PUBLICATION_TIME]).await
 }
 
 /// Returns all keys, the newest first, and creates the first one if there is none.

@@ -1,8 +1,8 @@
 //! A platform's message about a person who comes from it (LTI 5), and the trusted parts of it.
 use super::{
     Platform,
-    client::{now, scope},
-    crypto::{self, LEEWAY, PublicKey},
+    client::{now_seconds, scope},
+    crypto::{self, CLOCK_LEEWAY, PublicKey},
     keys,
 };
 use crate::{
@@ -15,7 +15,7 @@ use serde_json::{Map, Value, json};
 use thiserror::Error;
 
 /// The maximum age of an accepted message, in seconds.
-const OLDEST: u64 = 3600;
+const MAX_MESSAGE_AGE: u64 = 3600;
 
 /// The reason why a message is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
@@ -24,7 +24,7 @@ pub enum Rejection {
     #[error("the message is not signed by RS256 with a named key")]
     Form,
     /// The platform has no key with this name.
-    #[error("the platform publishes no key of the name that the message is signed with")]
+    #[error("the platform publishes no key with the name in the message")]
     UnknownKey,
     /// The platform's keys can't be read.
     #[error("the platform's keys can't be read now")]
@@ -36,10 +36,10 @@ pub enum Rejection {
     #[error("the message is too old, or a clock is wrong")]
     Time,
     /// The message answers another request.
-    #[error("the message is not for this sign-in: {0} is another one")]
+    #[error("the message is not for this sign-in: {0} differs")]
     Foreign(&'static str),
     /// The message comes from an unregistered deployment.
-    #[error("deployment {0} is not among those that an administrator named")]
+    #[error("deployment {0} is not registered; an administrator can add it")]
     Deployment(String),
     /// A part is missing or not understood.
     #[error("the message is not understood: {0}")]
@@ -226,8 +226,8 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     if (several && claims.azp.is_none()) || claims.azp.as_ref().is_some_and(|azp| *azp != settings.client_id) {
         return Err(Rejection::Foreign("the authorized party"));
     }
-    let now = now();
-    ensure(claims.iat <= now + LEEWAY && now <= claims.iat + OLDEST + LEEWAY, Rejection::Time)?;
+    let now = now_seconds();
+    ensure(claims.iat <= now + CLOCK_LEEWAY && now <= claims.iat + MAX_MESSAGE_AGE + CLOCK_LEEWAY, Rejection::Time)?;
     ensure(
         crate::store::Digest::from_bytes(claims.nonce.as_bytes()).as_str() == nonce,
         Rejection::Foreign("the nonce"),
@@ -327,7 +327,7 @@ pub async fn deep_linking_response(
     launch: &str,
     (slug, title): (&str, &str),
 ) -> Result<String, DbError> {
-    let now = now();
+    let now = now_seconds();
     let mut claims = json!({
         "iss": platform.settings.client_id,
         "aud": [platform.settings.issuer],

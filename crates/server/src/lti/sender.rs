@@ -17,27 +17,27 @@ use tokio_util::sync::CancellationToken;
 use url::Url;
 
 /// The number of parallel messages, so that a hanging platform delays only a few.
-const AT_ONE_TIME: usize = 4;
+const MAX_PARALLEL: usize = 4;
 
 /// The time between two searches for jobs without a notification.
-const LOOK_EVERY: Duration = Duration::from_secs(2);
+const SEARCH_INTERVAL: Duration = Duration::from_secs(2);
 
 /// The number of tries while a platform does not answer, with waits up to an hour: more than a day altogether.
-const PATIENT: u32 = 32;
+const MAX_OUTAGE_TRIES: u32 = 32;
 
 /// The number of tries while a platform rejects scores, because its configuration may be corrected.
-const REFUSED: u32 = 6;
+const MAX_REJECTED_TRIES: u32 = 6;
 
 /// The maximum duration of a message.
-const MOST: Duration = Duration::from_secs(600);
+const MAX_DURATION: Duration = Duration::from_secs(600);
 
 /// The maximum wait between two tries.
-const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+const MAX_WAIT: Duration = Duration::from_secs(3600);
 
 /// The time in which no other caller creates a column, in milliseconds; others check for it at the same interval.
-const MAKING: i64 = 90_000;
-const LOOKS: u32 = 100;
-const LOOK_AGAIN: Duration = Duration::from_millis(250);
+const COLUMN_CREATION_TIME: i64 = 90_000;
+const MAX_POLLS: u32 = 100;
+const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
 /// The claimant of the jobs.
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
@@ -52,7 +52,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
     look: impl Fn() -> F,
     stop: CancellationToken,
 ) {
-    let room = Arc::new(Semaphore::new(AT_ONE_TIME));
+    let room = Arc::new(Semaphore::new(MAX_PARALLEL));
     let mut subscription = notifier.subscribe();
     while !stop.is_cancelled() {
         tokio::select! {
@@ -74,7 +74,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
         }
         tokio::select! {
             () = stop.cancelled() => return,
-            _ = subscription.wait(LOOK_EVERY) => {}
+            _ = subscription.wait(SEARCH_INTERVAL) => {}
         }
     }
 }
@@ -106,7 +106,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             sent = &mut sending => break sent,
             () = tokio::time::sleep(policy.renew_every()) => {
                 let mut transaction = database.begin().await?;
-                queue::renew(&mut transaction, policy, &claim.lease, None, MOST).await?;
+                queue::renew(&mut transaction, policy, &claim.lease, None, MAX_DURATION).await?;
                 transaction.commit().await?;
             }
         }
@@ -125,10 +125,10 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             let text = fault.to_string();
             tracing::warn!(job = claim.lease.job, fault = text, "a platform rejected a score");
             let (tries, least) = match &fault {
-                ServiceFault::Away { after, .. } => (PATIENT, after.unwrap_or_default()),
-                ServiceFault::Refused(_) => (REFUSED, Duration::ZERO),
+                ServiceFault::Away { after, .. } => (MAX_OUTAGE_TRIES, after.unwrap_or_default()),
+                ServiceFault::Refused(_) => (MAX_REJECTED_TRIES, Duration::ZERO),
             };
-            let patient = QueuePolicy { max_failures: tries, longest_wait: LONGEST_WAIT, ..*policy };
+            let patient = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
             let failure = queue::fail(&mut transaction, &patient, &claim.lease, &text, least).await?;
             match (failure, serde_json::from_str::<Order>(&claim.payload)) {
                 (Failure::Buried, _) => {
@@ -156,7 +156,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
     };
     let mut body = parcel.content.clone();
     body["userId"] = json!(parcel.subject);
-    body["timestamp"] = json!(calendar::exact(parcel.stamp));
+    body["timestamp"] = json!(calendar::format_iso(parcel.stamp));
     let ask = Ask {
         address: scores(&line_item)?,
         accept: "application/json",
@@ -191,13 +191,13 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
         return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));
     };
     let link = parcel.order.link;
-    for _ in 0..LOOKS {
+    for _ in 0..MAX_POLLS {
         let mut transaction = database.begin().await?;
-        let column = score::column(&mut transaction, link, MAKING).await?;
+        let column = score::column(&mut transaction, link, COLUMN_CREATION_TIME).await?;
         transaction.commit().await?;
         match column {
             ColumnState::Known(address) => return Ok(address),
-            ColumnState::Claimed => tokio::time::sleep(LOOK_AGAIN).await,
+            ColumnState::Claimed => tokio::time::sleep(POLL_INTERVAL).await,
             ColumnState::Unclaimed => {
                 let made = find_or_make(database, lti, parcel, container).await;
                 let mut transaction = database.begin().await?;
@@ -207,7 +207,7 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
             }
         }
     }
-    Err(ServiceFault::Away { why: "the column of its grade book is still being made".to_owned(), after: None })
+    Err(ServiceFault::Away { why: "the column of its grade book is still being created".to_owned(), after: None })
 }
 
 /// Finds the column of a link on a platform, or creates it (AGS 3.2).

@@ -1,5 +1,5 @@
 //! The messages of a lease's holder. Each counts only while the job runs under this lease.
-use super::{A_DAY, Lease, QueuePolicy, millis};
+use super::{Lease, MAX_PLATFORM_WAIT, QueuePolicy, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -121,7 +121,7 @@ pub async fn fail(
     let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     let Some(row) = held else { return Ok(Failure::Late) };
     let failures = row.int("failures")? + 1;
-    let (deaths, wait) = (row.int("deaths")?, policy.wait(failures).max(least).min(A_DAY));
+    let (deaths, wait) = (row.int("deaths")?, policy.wait(failures).max(least).min(MAX_PLATFORM_WAIT));
     let loss = Loss { job: lease.job, failures, deaths, wait, fault };
     lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }

@@ -48,7 +48,7 @@ impl Lane {
 }
 
 /// The maximum wait that a platform can request.
-const A_DAY: Duration = Duration::from_secs(86_400);
+const MAX_PLATFORM_WAIT: Duration = Duration::from_secs(86_400);
 
 /// The time limits and the numbers of tries in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -7,7 +7,7 @@ use crate::{
 use std::time::Duration;
 
 /// The number of finished jobs from which the expected time is computed.
-const RECENT: i64 = 50;
+const RECENT_JOBS: i64 = 50;
 
 /// A waiting job's position in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub async fn place(
            SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
            ORDER BY finished_at DESC LIMIT ?
         ) AS recent";
-    let usual = transaction.one(statement, values![lane.name(), RECENT]).await?.maybe_int("took")?;
+    let usual = transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")?;
     let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
         WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let slots =

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The message about a job whose lease expired.
-const SILENT: &str = "its worker went silent";
+const SILENT_WORKER: &str = "its worker went silent";
 
 /// The results of a tick.
 #[derive(Debug, Default, PartialEq, Eq)]
@@ -70,8 +70,8 @@ async fn give_up(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match die(transaction, policy, &row, SILENT).await? {
-            Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT.to_owned() }),
+        match die(transaction, policy, &row, SILENT_WORKER).await? {
+            Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT_WORKER.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }
     }

@@ -1,5 +1,5 @@
 //! Reading of artifacts in pieces, so that memory is the same for artifacts of any size.
-use super::{ASIDE, Digest, KEPT, Store, StoreError};
+use super::{Digest, KEPT_FOLDER, Store, StoreError, TRASH};
 use crate::secret::hex;
 use axum::body::Bytes;
 use futures_util::{StreamExt, TryStreamExt, stream::BoxStream};
@@ -24,10 +24,10 @@ impl Store {
     ///
     /// When there is no such artifact, it is damaged, or the store fails.
     pub async fn open(&self, digest: &Digest) -> Result<OpenArtifact, StoreError> {
-        let mut found = self.objects.get(&digest.key(KEPT)).await;
+        let mut found = self.objects.get(&digest.key(KEPT_FOLDER)).await;
         // The sweep may have moved the file to the trash before a row referred to it again; restore it.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
-            found = self.objects.get(&digest.key(ASIDE)).await;
+            found = self.objects.get(&digest.key(TRASH)).await;
         }
         let found = match found {
             Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),

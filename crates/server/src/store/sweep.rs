@@ -1,5 +1,5 @@
 //! Removes unreferenced artifacts in batches, so that memory is the same for any number of artifacts.
-use super::{ASIDE, Digest, KEPT, Key, Store, StoreError, age};
+use super::{Digest, KEPT_FOLDER, Key, Store, StoreError, TRASH, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
 use std::{
@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The number of artifacts per query.
-const BATCH: usize = 500;
+const BATCH_SIZE: usize = 500;
 
 impl Store {
     /// Removes every unreferenced artifact that is older than `least`, and returns their number. `named` finds the
@@ -30,30 +30,30 @@ impl Store {
         least: Duration,
         mut named: impl FnMut(Vec<Digest>) -> F,
     ) -> Result<usize, E> {
-        let mut batches = self.list(KEPT).try_chunks(BATCH);
+        let mut batches = self.list(KEPT_FOLDER).try_chunks(BATCH_SIZE);
         while let Some(batch) = batches.next().await {
             let mut batch = batch.map_err(|error| error.1)?;
             batch.retain(|(_, age)| *age >= least);
             let digests: Vec<Digest> = batch.into_iter().map(|(digest, _)| digest).collect();
             let named = named(digests.clone()).await?;
             for digest in digests.iter().filter(|digest| !named.contains(digest)) {
-                self.rename(&digest.key(KEPT), &digest.key(ASIDE)).await?;
+                self.rename(&digest.key(KEPT_FOLDER), &digest.key(TRASH)).await?;
                 // In a bucket it is a new copy.
                 if let Some(folder) = &self.folder {
-                    renew(&folder.join(digest.key(ASIDE).as_ref()));
+                    renew(&folder.join(digest.key(TRASH).as_ref()));
                 }
             }
         }
         let mut given_up = 0;
-        let mut batches = self.list(ASIDE).try_chunks(BATCH);
+        let mut batches = self.list(TRASH).try_chunks(BATCH_SIZE);
         while let Some(batch) = batches.next().await {
             let batch = batch.map_err(|error| error.1)?;
             let named = named(batch.iter().map(|(digest, _)| digest.clone()).collect()).await?;
             for (digest, age) in batch {
                 if named.contains(&digest) {
-                    self.rename(&digest.key(ASIDE), &digest.key(KEPT)).await?;
+                    self.rename(&digest.key(TRASH), &digest.key(KEPT_FOLDER)).await?;
                 } else if age >= least {
-                    match self.objects.delete(&digest.key(ASIDE)).await {
+                    match self.objects.delete(&digest.key(TRASH)).await {
                         Ok(()) => given_up += 1,
                         Err(object_store::Error::NotFound { .. }) => {}
                         Err(error) => return Err(StoreError::from(error).into()),
@@ -70,7 +70,7 @@ impl Store {
 
     /// Returns all artifacts; one that is moved to the trash during the listing may be returned twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
-        self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
+        self.list(KEPT_FOLDER).chain(self.list(TRASH)).map_ok(|(digest, _)| digest)
     }
 
     /// Moves an object, unless another server has moved it.
@@ -98,7 +98,7 @@ impl Store {
 fn renew(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {
-        tracing::debug!(%error, "a file that was put aside keeps its age");
+        tracing::debug!(%error, "the age of a file in the trash could not be reset");
     }
 }
 
@@ -106,7 +106,7 @@ fn renew(file: &Path) {
 /// until they are complete, and listings leave them out.
 fn remove_parts(folder: &Path, least: Duration) -> usize {
     let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
-    let folders = [KEPT, ASIDE].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
+    let folders = [KEPT_FOLDER, TRASH].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
     let mut removed = 0;
     for entry in folders.filter(|path| path.is_dir()).flat_map(|path| below(&path)) {
         let is_part = entry.file_name().to_str().is_some_and(|name| name.contains('#'));

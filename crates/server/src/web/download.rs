@@ -20,14 +20,14 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
     let known = asked.get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok()).is_some_and(names_it);
     let mut response = match known {
         true => StatusCode::NOT_MODIFIED.into_response(),
-        false => whole(member.open(artifact).await?, Some(transfer)),
+        false => whole_answer(member.open(artifact).await?, Some(transfer)),
     };
     insert(&mut response, header::ETAG, &tag);
     Ok(response)
 }
 
 /// Returns an answer with a whole artifact.
-pub(super) fn whole(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
+pub(super) fn whole_answer(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
         // The answer is aborted, so that the client notices that bytes are missing.
         tracing::error!(%error, "an answer broke off");

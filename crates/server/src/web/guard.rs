@@ -10,23 +10,23 @@ use axum::{
 use std::time::Instant;
 
 /// The content policy of pages, which may use only this server's files, and not be in a frame.
-const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
+const PAGE_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       media-src blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; \
                       frame-ancestors 'none'";
 
 /// The addresses to which learning platforms send people, always from other sites; the sign-in's secret binds each
 /// request to the browser.
-const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
+const PLATFORM_ADDRESSES: [&str; 2] = ["/lti/login", "/lti/launch"];
 
 /// The page that connects an account with a provider. Another site could have signed this browser in at the provider.
-const CONNECTS: &str = "/account/provider";
+const CONNECT_ADDRESS: &str = "/account/provider";
 
 /// Rejects requests that another site made a browser send. Another site can't send a token in a header, so requests
 /// with a token are accepted. All others that change something must come from this site, which the browser states in
 /// `Sec-Fetch-Site`, or in `Origin` if it is older.
-pub(super) async fn same_site(State(app): State<App>, request: Request, next: Next) -> Response {
-    if (is_harmless(request.method()) && request.uri().path() != CONNECTS)
-        || FROM_PLATFORMS.contains(&request.uri().path())
+pub(super) async fn check_site(State(app): State<App>, request: Request, next: Next) -> Response {
+    if (is_harmless(request.method()) && request.uri().path() != CONNECT_ADDRESS)
+        || PLATFORM_ADDRESSES.contains(&request.uri().path())
         || who::secrets(request.headers(), app.is_secure()).bearer.is_some()
         || is_own(request.headers(), &app)
     {
@@ -40,13 +40,13 @@ pub(super) async fn same_site(State(app): State<App>, request: Request, next: Ne
 }
 
 /// Sends a session's cookie again after the session was extended.
-pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Next) -> Response {
+pub(super) async fn renew_cookie(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let renewed = who::RenewedSession::default();
     request.extensions_mut().insert(renewed.clone());
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
         && !response.headers().contains_key(header::SET_COOKIE)
-        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session, SESSION))
+        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session, SESSION_SECONDS))
     {
         response.headers_mut().append(header::SET_COOKIE, cookie);
     }
@@ -54,7 +54,7 @@ pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Ne
 }
 
 /// The lifetime of a session, in seconds.
-pub(super) const SESSION: u32 = 1_209_600;
+pub(super) const SESSION_SECONDS: u32 = 1_209_600;
 
 /// Returns a session's cookie with a lifetime in seconds.
 pub(super) fn session_cookie(app: &App, session: &str, lasts: u32) -> String {
@@ -77,13 +77,13 @@ fn is_own(headers: &HeaderMap, app: &App) -> bool {
 }
 
 /// Adds the headers of every answer.
-pub(super) async fn headers(State(app): State<App>, request: Request, next: Next) -> Response {
+pub(super) async fn add_headers(State(app): State<App>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     let mut set = |name: HeaderName, value: &'static str| {
         headers.entry(name).or_insert(HeaderValue::from_static(value));
     };
-    set(header::CONTENT_SECURITY_POLICY, POLICY);
+    set(header::CONTENT_SECURITY_POLICY, PAGE_POLICY);
     set(header::X_CONTENT_TYPE_OPTIONS, "nosniff");
     set(header::REFERRER_POLICY, "no-referrer");
     set(HeaderName::from_static("cross-origin-opener-policy"), "same-origin");
@@ -96,7 +96,7 @@ pub(super) async fn headers(State(app): State<App>, request: Request, next: Next
 }
 
 /// Logs and counts a request by its route, never by its address, which may contain secrets.
-pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next) -> Response {
+pub(super) async fn log_request(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     request.extensions_mut().insert(ArrivalTime(start));
     let in_flight = app.instruments().begin();

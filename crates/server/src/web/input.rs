@@ -85,13 +85,13 @@ pub(super) struct ArrivalTime(pub(super) Instant);
 pub(super) struct SignedIn;
 
 /// Returns the bytes of a body, which must be small until its sender is known.
-async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
-    let most = if request.extensions().get::<SignedIn>().is_some() { super::BODY } else { super::BODY_OF_NOBODY };
+async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
+    let most = if request.extensions().get::<SignedIn>().is_some() { super::MAX_BODY } else { super::MAX_GUEST_BODY };
     let reading = async {
         let mut stream = request.into_body().into_data_stream();
         let mut bytes = Vec::new();
         while let Some(chunk) = stream.next().await {
-            bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request broke off"))?);
+            bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request was interrupted"))?);
             if bytes.len() > most {
                 return Err(Problem::too_long(most));
             }
@@ -102,7 +102,7 @@ async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
 }
 
 /// Converts whole numbers such as `7.0`, as some languages write them, to integers, which they are for JSON Schema.
-fn mend(value: &mut Value) {
+fn fix_integers(value: &mut Value) {
     match value {
         Value::Number(number) => {
             let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
@@ -112,22 +112,22 @@ fn mend(value: &mut Value) {
                 *value = Value::from(whole as i64);
             }
         }
-        Value::Array(values) => values.iter_mut().for_each(mend),
-        Value::Object(fields) => fields.values_mut().for_each(mend),
+        Value::Array(values) => values.iter_mut().for_each(fix_integers),
+        Value::Object(fields) => fields.values_mut().for_each(fix_integers),
         _ => {}
     }
 }
 
 fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let mut value = serde_json::from_slice(bytes).ok()?;
-    mend(&mut value);
+    fix_integers(&mut value);
     serde_json::from_value(value).ok()
 }
 
 /// Reads the fields of an object whose types are checked later.
 pub(super) fn whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     let mut fields = Map::deserialize(deserializer)?;
-    fields.values_mut().for_each(mend);
+    fields.values_mut().for_each(fix_integers);
     Ok(fields)
 }
 
@@ -138,7 +138,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
         if !is_of_type(request.headers(), "application/json") {
             return Err(Problem::invalid("the body must be JSON: Content-Type: application/json"));
         }
-        let bytes = bytes(request, state).await?;
+        let bytes = read_body(request, state).await?;
         let read = serde_json::from_slice(&bytes);
         let read = read.or_else(|error| with_whole_numbers(&bytes).ok_or(error));
         read.map(Self).map_err(|error| Problem::invalid(error.to_string()))
@@ -152,7 +152,7 @@ impl FromRequest<App> for PlainBody {
         if !is_of_type(request.headers(), "text/csv") {
             return Err(Problem::invalid("the body must be CSV: Content-Type: text/csv"));
         }
-        let bytes = bytes(request, state).await?;
+        let bytes = read_body(request, state).await?;
         String::from_utf8(bytes).map(Self).map_err(|_| Problem::invalid("the table must be in UTF-8"))
     }
 }
@@ -168,7 +168,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
         if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
             return Err(Problem::invalid("the body must be a form"));
         }
-        let bytes = bytes(request, state).await?;
+        let bytes = read_body(request, state).await?;
         let request = Request::builder()
             .method("POST")
             .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")

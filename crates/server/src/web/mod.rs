@@ -19,11 +19,11 @@ use axum_client_ip::ClientIpSource;
 use utoipa_axum::router::OpenApiRouter;
 
 /// The maximum size of a request's body that is not an upload, in bytes.
-const BODY: usize = 1 << 20;
+const MAX_BODY: usize = 1 << 20;
 
 /// The maximum size of a body before sign-in, such as a token or a learning platform's message, in bytes. Thousands may
 /// be sent at the same time.
-const BODY_OF_NOBODY: usize = 32 << 10;
+const MAX_GUEST_BODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
     let (router, mut description) =
@@ -47,15 +47,15 @@ pub fn router(app: App) -> Router {
     Router::new()
         .merge(api)
         .merge(pages)
-        .fallback(pages::missing)
+        .fallback(pages::no_page)
         .method_not_allowed_fallback(pages::wrong_method)
         // Every reader of a body enforces its own limit.
         .layer(DefaultBodyLimit::disable())
-        .layer(middleware::from_fn_with_state(app.clone(), guard::same_site))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::check_site))
         .layer(middleware::from_fn(pages::show_others))
-        .layer(middleware::from_fn_with_state(app.clone(), guard::renew))
-        .layer(middleware::from_fn_with_state(app.clone(), guard::headers))
-        .layer(middleware::from_fn_with_state(app.clone(), guard::log))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::renew_cookie))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::add_headers))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::log_request))
         .layer(Extension(client_address))
         .with_state(app)
 }

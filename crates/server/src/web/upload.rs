@@ -25,7 +25,7 @@ use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
 /// The maximum additional time of an upload, for pauses of its body, in multiples of the patience.
-const PAUSES: u32 = 20;
+const MAX_PAUSES: u32 = 20;
 
 /// Returns the time in which an upload of a size must arrive to count as arrived at its start: half a minute, and a
 /// second for each 32 KiB. Otherwise an upload could start before the due date and be written later.
@@ -35,16 +35,16 @@ pub(super) fn fair_time(size: u64) -> Duration {
 
 /// The maximum number of bytes of a form around its file: boundaries, names, short fields, and the read buffer of a
 /// connection.
-const BESIDE: u64 = 1024 * 1024;
+const FORM_OVERHEAD: u64 = 1024 * 1024;
 
 /// Counts the bytes of a form that arrived and were not processed. They are in memory, so their number is limited.
 #[derive(Clone, Default)]
 struct UntakenBytes(Arc<AtomicU64>);
 
 impl UntakenBytes {
-    fn come(&self, bytes: usize) -> Result<(), &'static str> {
+    fn add(&self, bytes: usize) -> Result<(), &'static str> {
         let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
-        if untaken > BESIDE { Err("the form has too many fields besides its file") } else { Ok(()) }
+        if untaken > FORM_OVERHEAD { Err("the form has too many fields") } else { Ok(()) }
     }
 
     fn take(&self, bytes: usize) {
@@ -73,18 +73,18 @@ struct Place<'a> {
 /// Receives the body of a request, which is the file itself, or a form with a field `file`.
 pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     if let Err(problem) = app.ensure_room() {
-        return Err(refuse(app, request, most, problem).await);
+        return Err(reject(app, request, most, problem).await);
     }
     receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
 /// Rejects an upload before anything is stored. The body is read and dropped, because many programs read the answer
 /// only after they have sent everything, and would otherwise see a broken connection.
-pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
+pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
     }
-    let until = tokio::time::Instant::now() + app.patience * PAUSES;
+    let until = tokio::time::Instant::now() + app.patience * MAX_PAUSES;
     let mut body = request.into_body().into_data_stream();
     let mut size = 0;
     while size <= most {
@@ -132,13 +132,13 @@ pub(super) fn announced_size(request: &Request) -> Option<u64> {
 }
 
 async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
-    let deadline = Instant::now() + place.patience * PAUSES + fair_time(most);
+    let deadline = Instant::now() + place.patience * MAX_PAUSES + fair_time(most);
     if !is_form(&request) {
         if announced_size(&request).is_some_and(|announced| announced > most) {
             return Err(Problem::too_large(most));
         }
         let body: Body = request.into_body();
-        let file = to_file(place, body.into_data_stream(), most, deadline, None).await?;
+        let file = write_file(place, body.into_data_stream(), most, deadline, None).await?;
         return Ok(ReceivedFile { file, name: None, form: None, key: None });
     }
     let untaken = UntakenBytes::default();
@@ -146,7 +146,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
     let counting = untaken.clone();
     let counted = body.into_data_stream().map(move |chunk| {
         let chunk = chunk.map_err(|error| error.to_string())?;
-        counting.come(chunk.len()).map(|()| chunk).map_err(str::to_owned)
+        counting.add(chunk.len()).map(|()| chunk).map_err(str::to_owned)
     });
     let request = Request::from_parts(parts, Body::from_stream(counted));
     let mut multipart =
@@ -159,7 +159,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         match field.name() {
             Some("file") if file.is_none() => {
                 name = field.file_name().map(str::to_owned);
-                file = Some(to_file(place, field, most, deadline, Some(&untaken)).await?);
+                file = Some(write_file(place, field, most, deadline, Some(&untaken)).await?);
             }
             Some("form") => form = Some(short_text(place, field).await?),
             Some("key") => key = Some(short_text(place, field).await?),
@@ -188,7 +188,7 @@ async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Fiel
 }
 
 /// Writes a stream into a new file of the server.
-async fn to_file<E: Display>(
+async fn write_file<E: Display>(
     place: &Place<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
@@ -208,7 +208,7 @@ async fn to_file<E: Display>(
             None => break,
             Some(Err(error)) => {
                 tracing::debug!(%error, "an upload broke off");
-                return Err(Problem::invalid("the upload broke off"));
+                return Err(Problem::invalid("the upload was interrupted"));
             }
             Some(Ok(chunk)) => {
                 if let Some(untaken) = untaken {
@@ -251,8 +251,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
     let opened = File::open(file).map_err(|error| error.to_string())?;
     match fosssim_intake::look_through(opened, ArchiveLimits::USUAL) {
         Ok(files) if files.is_empty() => {
-            Err("looked for files in the archive, and found none, or only those that a file manager adds by itself"
-                .to_owned())
+            Err("the archive contains no files, or only those that a file manager adds automatically".to_owned())
         }
         Ok(files) => {
             let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
@@ -265,7 +264,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
                 (said, _) => check_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
             }
         }
-        Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("looked for {wanted}, and found {found}")),
+        Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("expected {wanted}, but found {found}")),
         Err(error) => Err(error.to_string()),
     }
 }
@@ -273,15 +272,15 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
 /// Checks that an archive with these files holds the program.
 fn check_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
     /// The maximum number of files that a message names.
-    const NAMED: usize = 6;
+    const MAX_NAMED: usize = 6;
     let Some(program) = program else { return Ok(()) };
     if files.contains(&fosssim_intake::top_folder(Path::new(""), files).join(program)) {
         return Ok(());
     }
-    let names = files.iter().take(NAMED).map(|file| file.to_string_lossy().escape_debug().to_string());
-    let more = (files.len() > NAMED).then(|| format!("{} more", files.len() - NAMED));
+    let names = files.iter().take(MAX_NAMED).map(|file| file.to_string_lossy().escape_debug().to_string());
+    let more = (files.len() > MAX_NAMED).then(|| format!("{} more", files.len() - MAX_NAMED));
     let found = names.chain(more).collect::<Vec<_>>().join(", ");
-    Err(format!("looked for the program {program} in the archive, because the suite builds nothing, and found {found}"))
+    Err(format!("expected the program {program} in the archive, because the suite builds nothing, but found {found}"))
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub struct NewFile {
 
 /// The name of the file for a grader's progress, such as `3/85`: the number of scenes with a verdict, and of all
 /// scenes.
-pub const PROGRESS: &str = "progress";
+pub const PROGRESS_FILE: &str = "progress";
 
 /// The reason why there is no verdict, which is never the submission's fault.
 #[derive(Debug, Error)]

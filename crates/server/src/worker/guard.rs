@@ -6,7 +6,7 @@ use std::{
 };
 
 /// The grader's process number, for the guard's signal handler.
-static GRADER: AtomicI32 = AtomicI32::new(0);
+static GRADER_PID: AtomicI32 = AtomicI32::new(0);
 
 /// Forks. The child returns and becomes the grader; this process becomes its guard, and ends in the same way.
 ///
@@ -20,7 +20,7 @@ static GRADER: AtomicI32 = AtomicI32::new(0);
 pub(super) unsafe fn run_guard() -> io::Result<()> {
     // SAFETY: these calls may be made between fork and exec, and use no memory of this process except for the text.
     unsafe {
-        // If memory runs short, the grader is killed before the worker.
+        // If memory runs short, the find_grader is killed before the worker.
         let file = libc::open(c"/proc/self/oom_score_adj".as_ptr(), libc::O_WRONLY | libc::O_CLOEXEC);
         if file >= 0 {
             libc::write(file, c"800".as_ptr().cast(), 3);
@@ -53,12 +53,12 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
 /// Forwards the stop signal to the grader.
 extern "C" fn pass_on(signal: libc::c_int) {
     // SAFETY: kill may be called in a signal handler; the grader is not reaped before the guard ends.
-    unsafe { libc::kill(GRADER.load(Ordering::Relaxed), signal) };
+    unsafe { libc::kill(GRADER_PID.load(Ordering::Relaxed), signal) };
 }
 
 /// Waits for the grader, and ends in the same way.
 unsafe fn watch(grader: libc::pid_t) -> ! {
-    GRADER.store(grader, Ordering::Relaxed);
+    GRADER_PID.store(grader, Ordering::Relaxed);
     // SAFETY: system calls on numbers, and structures that are zeroed first.
     unsafe {
         // The worker's signal handlers would write to files that are closed here. One of these files signals that the

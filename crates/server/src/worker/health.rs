@@ -17,7 +17,7 @@ use tokio_util::sync::CancellationToken;
 
 /// The wait after a failed check; it doubles up to the maximum.
 const FIRST_WAIT: Duration = Duration::from_secs(1);
-const LONGEST_WAIT: Duration = Duration::from_secs(60);
+const MAX_WAIT: Duration = Duration::from_secs(60);
 
 /// The health of a worker. Clones are cheap, and all slots share it.
 #[derive(Debug, Clone)]
@@ -85,7 +85,7 @@ impl<G: Grader> Health<G> {
                 () = tokio::time::sleep(wait) => {}
                 () = stop.cancelled() => {}
             }
-            wait = (wait * 2).min(LONGEST_WAIT);
+            wait = (wait * 2).min(MAX_WAIT);
         }
         false
     }
@@ -102,7 +102,7 @@ impl<G: Grader> Health<G> {
             return true;
         }
         let proof = match job_folder(&self.folder) {
-            Err(error) => Err(format!("no folder to work in: {error}")),
+            Err(error) => Err(format!("the working folder can't be created: {error}")),
             Ok(folder) => self.grader.prove(folder.path(), stop.child_token()).await,
         };
         if proof.is_err() && stop.is_cancelled() {

@@ -1,5 +1,5 @@
 //! The source of jobs for workers with access to the database: those in the server, and separate ones on request.
-use super::{GRACE, JobSource, SourceError};
+use super::{GRACE_PERIOD, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
@@ -13,10 +13,10 @@ use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
 
 /// The time between two searches for jobs without a notification.
-const LOOK_EVERY: Duration = Duration::from_secs(1);
+const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The minimum time that a job may take in addition to its grading.
-const LEAST_MARGIN: Duration = Duration::from_secs(60);
+const MIN_MARGIN: Duration = Duration::from_secs(60);
 
 /// The database and the store, as a source of jobs.
 #[derive(Debug)]
@@ -85,8 +85,8 @@ impl LocalSource {
 }
 
 /// Returns the maximum duration of a job: that of its grading, with additional time for transfers, storage and waits.
-fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
-    Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
+fn max_duration(task: &Task, policy: &QueuePolicy) -> Duration {
+    Duration::from_secs(task.seconds) + GRACE_PERIOD + MIN_MARGIN.max(policy.lease * 10)
 }
 
 impl JobSource for LocalSource {
@@ -117,7 +117,7 @@ impl JobSource for LocalSource {
     }
 
     async fn wait(&self, patience: Duration) {
-        self.subscription.lock().await.wait(patience.min(LOOK_EVERY)).await;
+        self.subscription.lock().await.wait(patience.min(SEARCH_INTERVAL)).await;
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
@@ -127,7 +127,7 @@ impl JobSource for LocalSource {
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
         let held = match task {
             Some(task) => {
-                let most = longest(&task, &self.policy);
+                let most = max_duration(&task, &self.policy);
                 queue::renew(&mut transaction, &self.policy, lease, progress, most).await?
             }
             None => false,

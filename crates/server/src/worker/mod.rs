@@ -14,9 +14,9 @@ mod source;
 mod suite_check;
 
 pub(crate) use child::limit;
-pub use grader::{Grader, GraderFault, GradingOutput, NewFile, PROGRESS};
+pub use grader::{Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE};
 pub use local::LocalSource;
-use program::GRACE;
+use program::GRACE_PERIOD;
 pub use program::{PUBLISHED_PAGE, Program, REPORTS, STAFF_PAGE};
 pub use remote::RemoteSource;
 pub use slots::work;

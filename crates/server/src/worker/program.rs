@@ -1,7 +1,7 @@
 //! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
 //! stops the worker, and all leftovers of the child are removed with the job.
 use super::{
-    Grader, GraderFault, GradingOutput, NewFile, PROGRESS,
+    Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE,
     child::{Child, End},
     reading,
 };
@@ -20,10 +20,10 @@ use std::{
 use tokio_util::sync::CancellationToken;
 
 /// The maximum time for the grader to write its reports after it was stopped.
-pub(super) const GRACE: Duration = Duration::from_secs(20);
+pub(super) const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
 /// The maximum length of the grader's messages for the administrator.
-const MESSAGE: usize = 2000;
+const MAX_MESSAGE_LENGTH: usize = 2000;
 
 /// The name of the page for staff, which shows everything.
 pub const STAFF_PAGE: &str = "staff.html";
@@ -87,7 +87,7 @@ impl Program {
         isolate(&mut command, folder);
         // Other graders may not have these options.
         command.env("FOSSSIM_PLATFORM_HIDES", "true");
-        command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
+        command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS_FILE));
         command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));
         command.env("FOSSSIM_PUBLISHED_PAGE", folder.join(PUBLISHED_PAGE));
         command
@@ -95,13 +95,13 @@ impl Program {
 }
 
 /// The scene for a check, a small one of the grader.
-const PROOF: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
+const CHECK_SCENE: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
 
 /// The number of bytes that must be writable in a folder for jobs.
-const ROOM: usize = 8 << 20;
+const REQUIRED_BYTES: usize = 8 << 20;
 
 /// The maximum duration of a step of a check.
-const PROOF_TIME: Duration = Duration::from_secs(60);
+const CHECK_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl Program {
     /// Runs the grader for a check, and returns its exit code.
@@ -115,12 +115,12 @@ impl Program {
         let end = tokio::select! {
             end = child.wait() => Some(end),
             () = stop.cancelled() => None,
-            () = tokio::time::sleep(PROOF_TIME) => None,
+            () = tokio::time::sleep(CHECK_TIMEOUT) => None,
         };
         let step = arguments[0];
         match end {
             Some(End::Code(code @ (0..=2))) => Ok(code),
-            Some(End::Code(code)) => Err(format!("`{step}` ended with exit code {code}: {}", last_words(&messages))),
+            Some(End::Code(code)) => Err(format!("`{step}` ended with exit code {code}: {}", last_output(&messages))),
             Some(End::Signal(signal)) => Err(format!("`{step}` was ended by signal {signal}")),
             None => {
                 child.kill();
@@ -140,10 +140,10 @@ impl Program {
     ) -> Result<(), String> {
         let grade = folder.join("proof.json");
         let format = format!("json={}", grade.display());
-        let arguments = [&["grade"], submission, &["--scene", PROOF, "--format", &format]].concat();
+        let arguments = [&["grade"], submission, &["--scene", CHECK_SCENE, "--format", &format]].concat();
         let ended = self.step(folder, &arguments, stop).await?;
         if ended != code {
-            let said = last_words(&folder.join("messages.txt"));
+            let said = last_output(&folder.join("messages.txt"));
             return Err(format!("grading an example ended with exit code {ended}, not {code}: {said}"));
         }
         let graded = reading::read_grade(&grade)?;
@@ -170,13 +170,13 @@ impl Grader for Program {
     /// is only started.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
-        fs::write(&room, vec![1; ROOM]).map_err(|error| format!("no room to work in: {error}"))?;
+        fs::write(&room, vec![1; REQUIRED_BYTES]).map_err(|error| format!("there is no space to work in: {error}"))?;
         fs::remove_file(&room).map_err(|error| error.to_string())?;
-        let trace = folder.join("right").join(PROOF).with_extension("bin");
+        let trace = folder.join("right").join(CHECK_SCENE).with_extension("bin");
         let idle = folder.join("idle");
         let above = trace.parent().unwrap_or(folder);
         fs::create_dir_all(above).and_then(|()| fs::create_dir(&idle)).map_err(|error| error.to_string())?;
-        let recorded = ["simulate", &format!("asset:{PROOF}"), "--output", &trace.display().to_string()];
+        let recorded = ["simulate", &format!("asset:{CHECK_SCENE}"), "--output", &trace.display().to_string()];
         if self.step(folder, &recorded, &stop).await? != 0 {
             return Ok(());
         }
@@ -197,7 +197,7 @@ impl Grader for Program {
     ) -> Result<GradingOutput, GraderFault> {
         let program = match task.submission.form {
             Form::Program => {
-                place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
+                place_program(submission, folder, &task.submission.name).map_err(fault_about("place the program"))?
             }
             Form::Sources => unpack(submission, folder.join("submission")).await?.0,
             // The top folder stays, because it may be the group of all scenes.
@@ -210,10 +210,10 @@ impl Grader for Program {
         let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
-        command.stderr(fs::File::create(&messages).map_err(cannot("write the messages"))?);
-        let child = Child::start(command).map_err(cannot("start the grader"))?;
-        let (end, stopped) = end_of(&child, Duration::from_secs(task.seconds), &stop).await?;
-        let said = || last_words(&messages);
+        command.stderr(fs::File::create(&messages).map_err(fault_about("write the messages"))?);
+        let child = Child::start(command).map_err(fault_about("start the grader"))?;
+        let (end, stopped) = wait_for_end(&child, Duration::from_secs(task.seconds), &stop).await?;
+        let said = || last_output(&messages);
         match end {
             // The exit codes mean: 0 accepted, 1 not accepted, 130 stopped with partial results.
             End::Code(0 | 1) => {}
@@ -241,7 +241,7 @@ impl Grader for Program {
 }
 
 /// Returns the end of a grader, and whether it exceeded the time limit.
-async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
+async fn wait_for_end(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
     let (mut left, mut is_late) = (most, false);
     loop {
         tokio::select! {
@@ -259,11 +259,11 @@ async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Resu
                 }
             },
         }
-        (left, is_late) = (GRACE, true);
+        (left, is_late) = (GRACE_PERIOD, true);
     }
 }
 
-fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
+fn fault_about(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
@@ -296,9 +296,9 @@ fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<Pat
 }
 
 /// Returns the end of the grader's output, on one line.
-fn last_words(file: &Path) -> String {
+fn last_output(file: &Path) -> String {
     let bytes = fs::read(file).unwrap_or_default();
-    let from = bytes.len().saturating_sub(MESSAGE);
+    let from = bytes.len().saturating_sub(MAX_MESSAGE_LENGTH);
     let text = String::from_utf8_lossy(&bytes[from..]);
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");

@@ -20,14 +20,14 @@ use std::{
 use ureq::{Agent, Body, RequestBuilder, http::Response};
 
 /// The time between two requests for a job.
-const ASK_EVERY: Duration = Duration::from_secs(1);
+const REQUEST_INTERVAL: Duration = Duration::from_secs(1);
 
 /// The maximum time to wait for the server's answer, and for each part of a file.
-const PATIENCE: Duration = Duration::from_secs(60);
-const WHOLE_FILE: Duration = Duration::from_secs(900);
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(60);
+const FILE_TIMEOUT: Duration = Duration::from_secs(900);
 
 /// The maximum size of an answer, in bytes.
-const ANSWER: u64 = 1 << 20;
+const MAX_ANSWER_BYTES: u64 = 1 << 20;
 
 /// A server over HTTP, as a source of jobs. Clones are cheap.
 #[derive(Clone)]
@@ -56,9 +56,9 @@ impl RemoteSource {
             .http_status_as_error(false)
             // The token is sent only to this server.
             .max_redirects(0)
-            .timeout_connect(Some(PATIENCE))
-            .timeout_recv_response(Some(PATIENCE))
-            .timeout_global(Some(WHOLE_FILE))
+            .timeout_connect(Some(ANSWER_TIMEOUT))
+            .timeout_recv_response(Some(ANSWER_TIMEOUT))
+            .timeout_global(Some(FILE_TIMEOUT))
             .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
             .build()
             .new_agent();
@@ -95,7 +95,7 @@ fn format_lease(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
 
-fn no_answer(error: impl fmt::Display) -> SourceError {
+fn outage(error: impl fmt::Display) -> SourceError {
     SourceError::Away(format!("the server does not answer: {error}"))
 }
 
@@ -108,7 +108,7 @@ impl Parts {
     fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, SourceError> {
         let answer = self.post(path, body)?;
         let mut answer = check_status(answer)?;
-        let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(no_answer)?;
+        let text = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(outage)?;
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
@@ -124,7 +124,7 @@ impl Parts {
     fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, SourceError> {
         let body = serde_json::to_vec(body).map_err(|error| SourceError::Refused(error.to_string()))?;
         let request = self.sign(self.agent.post(self.url(path)), None);
-        request.header("Content-Type", "application/json").send(&body).map_err(no_answer)
+        request.header("Content-Type", "application/json").send(&body).map_err(outage)
     }
 }
 
@@ -135,7 +135,7 @@ fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceErro
     if status.is_success() {
         return Ok(answer);
     }
-    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().unwrap_or_default();
+    let body = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().unwrap_or_default();
     let problem: serde_json::Value = serde_json::from_slice(&body).unwrap_or_default();
     let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
     // Errors of this program, and missing things, are permanent; errors of a proxy are temporary.
@@ -153,7 +153,7 @@ impl JobSource for RemoteSource {
             if answer.status() == 204 {
                 return Ok(None);
             }
-            let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(no_answer)?;
+            let text = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(outage)?;
             serde_json::from_slice(&text)
                 .map(Some)
                 .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
@@ -162,7 +162,7 @@ impl JobSource for RemoteSource {
     }
 
     async fn wait(&self, patience: Duration) {
-        tokio::time::sleep(patience.min(ASK_EVERY)).await;
+        tokio::time::sleep(patience.min(REQUEST_INTERVAL)).await;
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
@@ -185,7 +185,7 @@ impl JobSource for RemoteSource {
         let (lease, wanted, place) = (format_lease(lease), digest.clone(), file.to_owned());
         self.call(move |parts| {
             let request = parts.agent.get(parts.url(&format!("files/{wanted}")));
-            let answer = parts.sign(request, Some(&lease)).call().map_err(no_answer)?;
+            let answer = parts.sign(request, Some(&lease)).call().map_err(outage)?;
             let mut answer = check_status(answer)?;
             let written = fs::File::create_new(&place).and_then(|mut output| {
                 let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
@@ -194,11 +194,11 @@ impl JobSource for RemoteSource {
             written.map(drop).map_err(|error| {
                 // A retry must find no file.
                 drop(fs::remove_file(&place));
-                no_answer(error)
+                outage(error)
             })
         })
         .await?;
-        let found = digest_of_file(file).await.map_err(no_answer)?;
+        let found = digest_of_file(file).await.map_err(outage)?;
         if found.digest != *digest {
             drop(fs::remove_file(file));
             return Err(SourceError::Away(format!("the server's bytes do not match {digest}")));
@@ -212,7 +212,7 @@ impl JobSource for RemoteSource {
         self.call(move |parts| {
             let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
             let request = parts.sign(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
-            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(no_answer)?;
+            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(outage)?;
             check_status(answer).map(drop)
         })
         .await?;

@@ -1,6 +1,6 @@
 //! The slots of a worker; each runs one job at a time.
 use super::{
-    Grader, GraderFault, JobSource, PROGRESS, SourceError,
+    Grader, GraderFault, JobSource, PROGRESS_FILE, SourceError,
     health::{Health, job_folder},
 };
 use crate::{
@@ -17,23 +17,23 @@ use std::{
 use tokio_util::sync::CancellationToken;
 
 /// The time that a slot waits for a job before it requests one again.
-const PATIENCE: Duration = Duration::from_secs(20);
+const JOB_WAIT: Duration = Duration::from_secs(20);
 
 /// The wait after the source did not answer; it doubles up to the maximum.
 const FIRST_WAIT: Duration = Duration::from_millis(200);
-const LONGEST_WAIT: Duration = Duration::from_secs(5);
+const MAX_WAIT: Duration = Duration::from_secs(5);
 
 /// The maximum number of tries to fetch the files of a job while the source does not answer.
-const MOST_FETCHES: u32 = 5;
+const MAX_FETCHES: u32 = 5;
 
 /// The time between two reports of a grading's progress.
-const TELL_EVERY: Duration = Duration::from_secs(1);
+const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 
 /// A number of scenes that no suite exceeds.
-const MANY_SCENES: u32 = 1_000_000;
+const MAX_SCENES: u32 = 1_000_000;
 
 /// The name of a job's folder for the grader.
-const WORK: &str = "work";
+const WORK_FOLDER: &str = "work";
 
 /// Runs jobs, one in each slot, until `stop` is canceled; then returns unfinished jobs, and ends. The folders of jobs
 /// are created in `folder`, which its owner empties, not the slots.
@@ -59,7 +59,7 @@ pub async fn work<D: JobSource, G: Grader>(
             match source.tick(slots, health.fault().as_deref()).await {
                 Ok(()) => {}
                 Err(SourceError::Dismissed) => return SourceError::Dismissed,
-                Err(error) => tracing::warn!(%error, "the worker can't say that it is alive"),
+                Err(error) => tracing::warn!(%error, "the worker's report that it is alive failed"),
             }
             tokio::select! {
                 () = tokio::time::sleep(source.tick_every()) => {}
@@ -80,7 +80,7 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
             Ok(None) => {
                 wait = FIRST_WAIT;
                 tokio::select! {
-                    () = source.wait(PATIENCE) => {}
+                    () = source.wait(JOB_WAIT) => {}
                     () = stop.cancelled() => {}
                 }
             }
@@ -100,7 +100,7 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
                     () = tokio::time::sleep(wait) => {}
                     () = stop.cancelled() => {}
                 }
-                wait = (wait * 2).min(LONGEST_WAIT);
+                wait = (wait * 2).min(MAX_WAIT);
             }
         }
     }
@@ -119,11 +119,11 @@ enum JobEnding {
 async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: ClaimedJob, stop: CancellationToken) {
     let lost = CancellationToken::new();
     let folder = job_folder(&health.folder);
-    let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));
+    let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK_FOLDER).join(PROGRESS_FILE));
     let every = Duration::from_millis(job.renew_every);
     let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), every, progress, lost.clone()));
     let ending = match folder {
-        Err(error) => JobEnding::Failed(format!("no folder for the job: {error}")),
+        Err(error) => JobEnding::Failed(format!("the job's folder can't be created: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
             let grading = async {
@@ -171,7 +171,7 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
     let mut renewed = tokio::time::Instant::now();
     let mut told = None;
     loop {
-        tokio::time::sleep(every.min(TELL_EVERY)).await;
+        tokio::time::sleep(every.min(REPORT_INTERVAL)).await;
         let progress = file.as_deref().and_then(progress_in);
         if progress == told && renewed.elapsed() < every {
             continue;
@@ -196,7 +196,7 @@ fn progress_in(file: &Path) -> Option<Progress> {
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
     let (done, all) = text.trim().split_once('/')?;
     let progress = Progress { done: done.parse().ok()?, all: all.parse().ok()? };
-    (progress.done <= progress.all && progress.all <= MANY_SCENES).then_some(progress)
+    (progress.done <= progress.all && progress.all <= MAX_SCENES).then_some(progress)
 }
 
 impl From<SourceError> for GraderFault {
@@ -215,21 +215,21 @@ async fn attempt<D: JobSource, G: Grader>(
 ) -> Result<Outcome, GraderFault> {
     let start = Instant::now();
     let submission = folder.join("submission");
-    patiently(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
+    retry(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
     let suite = match &job.task.suite {
         Suite::Named(_) => None,
         Suite::Archive(digest) => {
             let file = folder.join("suite");
-            patiently(|| source.fetch(&job.lease, digest, &file)).await?;
+            retry(|| source.fetch(&job.lease, digest, &file)).await?;
             Some(file)
         }
     };
-    let work = folder.join(WORK);
+    let work = folder.join(WORK_FOLDER);
     std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot make a folder: {error}")))?;
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
     for file in &graded.files {
-        let artifact = patiently(|| source.store(&job.lease, &file.path)).await?;
+        let artifact = retry(|| source.store(&job.lease, &file.path)).await?;
         files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artifact });
     }
     let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
@@ -238,15 +238,15 @@ async fn attempt<D: JobSource, G: Grader>(
 
 /// Repeats a request to a source that does not answer, so that a short failure of the network does not count as a
 /// failure of the job.
-async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
+async fn retry<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
-    for _ in 0..MOST_FETCHES {
+    for _ in 0..MAX_FETCHES {
         match ask().await {
             Err(SourceError::Away(error)) => tracing::warn!(error, "the source can't be reached"),
             answer => return answer,
         }
         tokio::time::sleep(wait).await;
-        wait = (wait * 2).min(LONGEST_WAIT);
+        wait = (wait * 2).min(MAX_WAIT);
     }
     ask().await
 }
@@ -283,6 +283,6 @@ async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop
             }
         }
         tokio::time::sleep(wait).await;
-        wait = (wait * 2).min(LONGEST_WAIT);
+        wait = (wait * 2).min(MAX_WAIT);
     }
 }

@@ -19,7 +19,7 @@ pub enum SourceError {
     #[error("{0}")]
     Refused(String),
     /// The worker's token is unknown or revoked.
-    #[error("its token is unknown or revoked: an administrator makes another one on the page \"Administration\"")]
+    #[error("its token is unknown or revoked; an administrator can create another one on the page \"Administration\"")]
     Dismissed,
 }
 

@@ -7,13 +7,13 @@ use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
 /// The limit of wall time and processor time for the grader, in seconds.
-const SECONDS: u64 = 60;
+const MAX_SECONDS: u64 = 60;
 
 /// The limit of the grader's memory, in bytes.
-const MEMORY: u64 = 2 << 30;
+const MAX_MEMORY: u64 = 2 << 30;
 
 /// The maximum length of the shown output.
-const MESSAGE: usize = 2000;
+const MAX_MESSAGE_LENGTH: usize = 2000;
 
 /// Checks the suite in a folder with the grader. A grader without the command `suite check` has no objections.
 ///
@@ -26,15 +26,15 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     command.args(["suite", "check", "suite.toml"]);
     isolate(&mut command, folder);
     command.stderr(messages.reopen().map_err(|error| error.to_string())?);
-    limit(&mut command, MEMORY, SECONDS);
+    limit(&mut command, MAX_MEMORY, MAX_SECONDS);
     let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
-    let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.wait()).await else {
+    let Ok(end) = tokio::time::timeout(Duration::from_secs(MAX_SECONDS), child.wait()).await else {
         child.kill();
         child.wait().await;
-        return Err(format!("the grader did not finish checking it within {SECONDS} seconds"));
+        return Err(format!("the grader did not finish checking it within {MAX_SECONDS} seconds"));
     };
     let said = fs::read(messages.path()).unwrap_or_default();
-    let said = String::from_utf8_lossy(&said[..said.len().min(MESSAGE)]).into_owned();
+    let said = String::from_utf8_lossy(&said[..said.len().min(MAX_MESSAGE_LENGTH)]).into_owned();
     tracing::info!(?end, said, "the grader checked a suite");
     match (end, said.trim().strip_prefix("error:")) {
         (End::Code(0), _) => Ok(()),

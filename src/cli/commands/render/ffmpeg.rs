@@ -32,10 +32,10 @@ const ENCODERS: [(&str, &[&str]); 4] = [
 ];
 
 /// The time after which a program that reads nothing is ended.
-const PATIENCE: Duration = Duration::from_secs(60);
+const STUCK_TIME: Duration = Duration::from_secs(60);
 
 /// The maximum number of bytes that are kept of the program's messages.
-const WORDS: usize = 4096;
+const MAX_MESSAGE_BYTES: usize = 4096;
 
 /// A film that is being encoded.
 pub(super) struct Ffmpeg {
@@ -71,7 +71,7 @@ impl Ffmpeg {
             Ok(run) => String::from_utf8_lossy(&run.stdout).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
                 "an MP4 needs ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt install ffmpeg), \
-                 or name the output .gif, which needs nothing"
+                 or choose an output .gif, which needs no other program"
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
@@ -91,7 +91,7 @@ impl Ffmpeg {
     /// When it can't be started, or the output is not a file.
     pub(super) fn start(size: Size, rate: Rate, output: Output) -> Result<Self> {
         let (encoder, options) = Self::find()?;
-        let Some(path) = output.temporary_path() else { bail!("an MP4 is written into a file; name one") };
+        let Some(path) = output.temporary_path() else { bail!("an MP4 needs an output file; name one") };
         let mut file = OsString::from("file:");
         file.push(&path);
         let size = size.to_string();
@@ -113,7 +113,7 @@ impl Ffmpeg {
         let words = errors.map(|mut errors| {
             thread::spawn(move || {
                 let mut words = Vec::new();
-                let _ = errors.by_ref().take(WORDS as u64).read_to_end(&mut words);
+                let _ = errors.by_ref().take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut words);
                 // The rest is read so that the program does not block.
                 let _ = io::copy(&mut errors, &mut io::sink());
                 String::from_utf8_lossy(&words).trim().to_owned()
@@ -131,8 +131,8 @@ impl Ffmpeg {
     ///
     /// When the program has ended.
     pub(super) fn write_picture(&mut self, rgba: &[u8]) -> Result<()> {
-        let pipe = self.pipe.as_mut().context("ffmpeg takes no pictures")?;
-        pipe.write_all(rgba).context("ffmpeg takes no more pictures")?;
+        let pipe = self.pipe.as_mut().context("ffmpeg accepts no pictures")?;
+        pipe.write_all(rgba).context("ffmpeg accepts no more pictures")?;
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);
         Ok(())
     }
@@ -148,7 +148,7 @@ impl Ffmpeg {
         let status = loop {
             // The lock is released during the wait, for the watching thread.
             let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
-            match asked.context("ffmpeg can't be waited for")? {
+            match asked.context("cannot wait for ffmpeg")? {
                 Some(status) => break status,
                 None => thread::sleep(Duration::from_millis(10)),
             }
@@ -156,7 +156,7 @@ impl Ffmpeg {
         self.watch.over.store(true, Ordering::Relaxed);
         let words = self.words.take().and_then(|words| words.join().ok()).unwrap_or_default();
         if self.watch.given_up.load(Ordering::Relaxed) {
-            bail!("ffmpeg took no picture for {} seconds and was ended", PATIENCE.as_secs());
+            bail!("ffmpeg read no picture for {} seconds and was ended", STUCK_TIME.as_secs());
         }
         if !status.success() {
             bail!("ffmpeg failed ({status}): {words}");
@@ -187,7 +187,7 @@ fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
             let pictures = watch.pictures.load(Ordering::Relaxed);
             if pictures != seen {
                 (seen, since) = (pictures, Instant::now());
-            } else if since.elapsed() > PATIENCE && !watch.over.load(Ordering::Relaxed) {
+            } else if since.elapsed() > STUCK_TIME && !watch.over.load(Ordering::Relaxed) {
                 watch.given_up.store(true, Ordering::Relaxed);
                 let _ = child.lock().unwrap_or_else(PoisonError::into_inner).kill();
                 return;

@@ -31,12 +31,12 @@ use std::{
 const LONG_FILM: u32 = 1500;
 
 /// The maximum number of pictures in one run.
-const MOST_PICTURES: u32 = 100_000;
+const MAX_PICTURES: u32 = 100_000;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
-    let form = form(arguments)?;
+    let form = output_format(arguments)?;
     let scene = input::scene(&arguments.scene)?;
-    let picks = picks(arguments, form, &scene.scene)?;
+    let picks = picked_steps(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::FASTEST) };
     // An output that can't work is reported before the work is done.
     let target = RenderTarget::open(form, arguments)?;
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
 
 /// Returns the format of the output, from `--format` or its name. SVG and PNG are one picture with `--step`, otherwise
 /// a folder with a picture per step.
-fn form(arguments: &RenderArguments) -> Result<RenderFormat> {
+fn output_format(arguments: &RenderArguments) -> Result<RenderFormat> {
     let (output, is_single) = (&arguments.output, arguments.step.is_some());
     let by_name = |extension: &str| has_extension(output, extension);
     let format = match arguments.format {
@@ -111,7 +111,7 @@ const fn is_film(form: RenderFormat) -> bool {
 }
 
 /// Returns the steps that are drawn.
-fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<Picks> {
+fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<Picks> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
@@ -130,13 +130,13 @@ fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Resu
     let first = if is_film(form) { 0 } else { every };
     let picks = Picks { first, every, last };
     let pictures = picks.count();
-    if pictures > MOST_PICTURES {
-        let least = last.div_ceil(MOST_PICTURES - 1);
-        bail!("these would be {pictures} pictures; more than {MOST_PICTURES} are not drawn, add --every {least}");
+    if pictures > MAX_PICTURES {
+        let least = last.div_ceil(MAX_PICTURES - 1);
+        bail!("this would draw {pictures} pictures, more than the limit of {MAX_PICTURES}; add --every {least}");
     }
     if pictures == 0 {
         let steps = format_count(last.into(), "step");
-        bail!("no step is drawn: the scene has {steps}, and every {every}th is asked for");
+        bail!("no step is drawn: the scene has {steps}, and --every {every} is requested");
     }
     Ok(picks)
 }
@@ -174,7 +174,7 @@ impl Reel {
         for number in 1..=self.main.pictures {
             let step = self.picks.step(number);
             if !self.main.next(&mut place)? {
-                bail!("the stored motion of {} is shorter than it was", self.main.name);
+                bail!("the stored motion of {} changed while it was being read", self.main.name);
             }
             let overlaid = match &mut self.overlay {
                 Some(overlay) => overlay.next(&mut other)?,

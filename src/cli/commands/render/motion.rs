@@ -18,7 +18,7 @@ use std::{
 use tempfile::SpooledTempFile;
 
 /// The maximum number of bytes of a motion in memory.
-const KEPT: usize = 32 << 20;
+const MAX_MEMORY_BYTES: usize = 32 << 20;
 
 /// The steps that are drawn: `first`, `first + every` and so on up to `last`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -90,7 +90,7 @@ struct FilmKeeper<'a> {
 
 impl<'a> FilmKeeper<'a> {
     fn new(scene: &'a Scene, picks: Picks) -> Self {
-        let file = BufWriter::new(tempfile::spooled_tempfile(KEPT));
+        let file = BufWriter::new(tempfile::spooled_tempfile(MAX_MEMORY_BYTES));
         Self { scene, picks, file, pictures: 0, extent: Extent::default() }
     }
 

@@ -34,7 +34,7 @@ impl DrawnNumbers {
 }
 
 /// Formats a number of thousandths as a decimal number.
-fn thousandths(number: i32) -> String {
+fn format_thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }
 
@@ -47,9 +47,9 @@ fn begin(description: &str, stiffness: u32) -> String {
 }
 
 /// Adds a particle, whose position and velocity are in thousandths.
-fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
-    let ([px, py], [vx, vy]) = (place.map(thousandths), velocity.map(thousandths));
-    let (radius, fixed) = (thousandths(radius), u8::from(fixed));
+fn add_particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
+    let ([px, py], [vx, vy]) = (place.map(format_thousandths), velocity.map(format_thousandths));
+    let (radius, fixed) = (format_thousandths(radius), u8::from(fixed));
     let _ = writeln!(
         text,
         "<particle m=\"1\" px=\"{px}\" py=\"{py}\" vx=\"{vx}\" vy=\"{vy}\" fixed=\"{fixed}\" radius=\"{radius}\"/>"
@@ -61,14 +61,14 @@ fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
     let mut drawn = DrawnNumbers(1);
     for corner in [[-400, -400], [30_400, -400], [30_400, 20_400], [-400, 20_400]] {
-        particle(&mut text, corner, [0; 2], 400, true);
+        add_particle(&mut text, corner, [0; 2], 400, true);
     }
     for index in 0..15_000 {
         let (column, row) = (index % 150, index / 150);
         let place = [200 * column + 100 + drawn.next() / 20, 200 * row + 100 + drawn.next() / 20];
         let haste = if drawn.next() < 10 { 20 } else { 1 };
         let velocity = [haste * (drawn.next() - 500), haste * (drawn.next() - 500)];
-        particle(&mut text, place, velocity, 80 + drawn.next() / 50, false);
+        add_particle(&mut text, place, velocity, 80 + drawn.next() / 50, false);
     }
     for edge in 0..4 {
         let _ = writeln!(text, "<edge i=\"{edge}\" j=\"{}\" radius=\"0.4\"/>", (edge + 1) % 4);
@@ -86,7 +86,7 @@ fn pile_of_ribbons() -> String {
         let left = 2 * drawn.next();
         for link in 0..length {
             let place = [left + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
-            particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
+            add_particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
             if link > 0 {
                 let second = ribbon * length + link;
                 let edge = ribbon * (length - 1) + link - 1;
@@ -111,6 +111,6 @@ mod tests {
             assert_eq!((scene.assignment(), scene.steps()), (Assignment::T2M3, 20));
             assert_eq!([scene.particles.len(), scene.edges.len()], [particles, edges]);
         }
-        assert_eq!([0, -5, 1203, -12_000].map(thousandths), ["0.000", "-0.005", "1.203", "-12.000"]);
+        assert_eq!([0, -5, 1203, -12_000].map(format_thousandths), ["0.000", "-0.005", "1.203", "-12.000"]);
     }
 }

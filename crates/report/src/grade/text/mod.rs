@@ -14,7 +14,7 @@ use fosssim_judge::Rules;
 use std::fmt::Write;
 
 /// The maximum number of lines of a program's output that are shown.
-const SHOWN_LINES: usize = 10;
+const MAX_SHOWN_LINES: usize = 10;
 
 /// The level of detail of the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
@@ -114,7 +114,7 @@ impl Text<'_> {
 
     /// Returns the suite, the weaknesses of the sandbox, and a failed build.
     fn circumstances(&self, grade: &Grade) -> String {
-        let mut text = format!("suite {}{}\n", one_line(&grade.suite), rules(grade));
+        let mut text = format!("suite {}{}\n", one_line(&grade.suite), describe_rules(grade));
         for warning in &grade.warnings {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
@@ -123,8 +123,8 @@ impl Text<'_> {
             let _ = writeln!(text, "{unfit}");
         }
         if let Some(build) = build {
-            let most = if self.shown < TextDetail::Wrong { SHOWN_LINES } else { usize::MAX };
-            let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), output(&build.output, most));
+            let most = if self.shown < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
+            let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), quote_output(&build.output, most));
         }
         text
     }
@@ -139,7 +139,7 @@ pub fn extra(grade: &Grade) -> String {
 }
 
 /// Returns the name of the rule book that counts, if a reader might expect the other; empty if both agree.
-fn rules(grade: &Grade) -> String {
+fn describe_rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
         (Rules::Fair | Rules::Both, 0) => String::new(),
@@ -153,7 +153,7 @@ fn rules(grade: &Grade) -> String {
 }
 
 /// Returns the style of a scene's verdict.
-const fn verdict_look(verdict: Verdict) -> Look {
+const fn verdict_style(verdict: Verdict) -> Look {
     match verdict {
         Verdict::Accepted => Look::Good,
         Verdict::NotRun => Look::Notice,
@@ -162,7 +162,7 @@ const fn verdict_look(verdict: Verdict) -> Look {
 }
 
 /// Returns the lines of program output, marked so that they cannot be confused with the report's.
-fn output(output: &str, most: usize) -> String {
+fn quote_output(output: &str, most: usize) -> String {
     let output = clean_output(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();
     if output.lines().count() > most {

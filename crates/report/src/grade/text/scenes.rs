@@ -1,10 +1,10 @@
 //! The scenes of a submission, group by group. Accepted scenes are only counted, and scenes that fail for the same
 //! cause are described once.
-use super::{super::phrases::list_some, Text, TextDetail, output, verdict_look};
+use super::{super::phrases::list_some, Text, TextDetail, quote_output, verdict_style};
 use crate::foreign::one_line;
 use crate::{
     explain,
-    grade::{AlikeScenes, by_cause, difference, format_points, points, text::SHOWN_LINES},
+    grade::{AlikeScenes, by_cause, describe_difference, format_points, points, text::MAX_SHOWN_LINES},
     number::format_count,
     style::Look,
     words,
@@ -14,7 +14,7 @@ use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
 /// The maximum number of named scenes that end in the same way.
-const NAMED: usize = 3;
+const MAX_NAMED: usize = 3;
 
 /// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
@@ -53,7 +53,7 @@ impl<'a> Scenes<'a, '_> {
             *folded.entry((scene.verdict, like)).or_default() += 1;
         }
         let row = |((verdict, like), count): ((Verdict, String), u64)| {
-            let code = style.paint(verdict_look(verdict), &format!("{:<3}", verdict.code()));
+            let code = style.paint(verdict_style(verdict), &format!("{:<3}", verdict.code()));
             format!("  {code} {}{like}\n", format_count(count, "scene"))
         };
         if folded.first_key_value().is_some_and(|((verdict, _), _)| verdict.is_accepted()) {
@@ -82,7 +82,7 @@ impl<'a> Scenes<'a, '_> {
 
     fn row(&self, scene: &SceneGrade) -> String {
         let (name, style) = (one_line(&scene.scene), self.options.style);
-        let code = style.paint(verdict_look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
+        let code = style.paint(verdict_style(scene.verdict), &format!("{:<3}", scene.verdict.code()));
         let blanks = " ".repeat(self.width.saturating_sub(columns(&name)));
         format!("  {code} {name}{blanks}  {} of {}\n", format_points(scene.points), points(scene.max_points))
     }
@@ -92,7 +92,7 @@ impl<'a> Scenes<'a, '_> {
         if !scene.verdict.is_accepted() {
             lines.push(one_line(&words::summary(scene)));
         }
-        lines.extend(difference(scene));
+        lines.extend(describe_difference(scene));
         if scene.verdict != Verdict::Unwritten {
             lines.extend(words::details(scene).iter().map(|line| one_line(line)));
         }
@@ -102,12 +102,12 @@ impl<'a> Scenes<'a, '_> {
             && !alike.is_empty()
         {
             let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
-            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_some(&names, NAMED));
+            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_some(&names, MAX_NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();
         if scene.verdict >= Verdict::NoOutput && !scene.stderr.trim().is_empty() {
-            let _ = writeln!(text, "      its standard error:\n{}", output(&scene.stderr, SHOWN_LINES));
+            let _ = writeln!(text, "      its standard error:\n{}", quote_output(&scene.stderr, MAX_SHOWN_LINES));
         }
         text
     }

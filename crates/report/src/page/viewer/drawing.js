@@ -30,7 +30,7 @@ class Drawing extends Motion {
   }
   classWords(step = this.step) {
     return (
-      { r: "right", w: "wrong by itself", i: "right by itself, but it starts from where a wrong step has led" }[
+      { r: "right", w: "wrong by itself", i: "right by itself, but it starts from a wrong state" }[
         this.data.strip[step - 1]
       ] || (step === 0 ? "the start" : "not judged")
     );

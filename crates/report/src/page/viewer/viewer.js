@@ -161,7 +161,7 @@ class Viewer extends Words {
       el("canvas", { width: 384, height: 216 }),
       el("div"),
     );
-    this.besideButton = button("Side by side", "What is expected beside what is there", () => this.besides(), "s");
+    this.besideButton = button("Side by side", "Expected and actual motion side by side", () => this.besides(), "s");
     this.keys = el(
       "details",
       { class: "table help" },
@@ -202,8 +202,8 @@ class Viewer extends Words {
       ? el(
           "p",
           { class: "hint" },
-          `This motion is too large to be here to the last bit: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
-          kept.length ? `Exact are the records around these steps: ${kept.join(", ")}.` : "",
+          `This motion is too large for this page: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
+          kept.length ? `The records around these steps are exact: ${kept.join(", ")}.` : "",
         )
       : "";
     this.root = el(
@@ -253,7 +253,7 @@ class Viewer extends Words {
             { class: "group" },
             button("PNG", "Save this picture", () => this.picture()),
             button("SVG", "Save this picture as a drawing", () => this.drawing()),
-            button("Clip", "Record a film of the steps", () => this.clip()),
+            button("Clip", "Record a video of the steps", () => this.clip()),
             // A page within a frame has no address.
             location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link()),
           ),
@@ -351,7 +351,7 @@ class Viewer extends Words {
   }
   stripWords() {
     const [right, wrong, after] = ["r", "w", "i"].map((letter) => this.count(letter));
-    return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but following from a wrong one, ${this.data.steps - right - wrong - after} not judged`;
+    return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but starting from a wrong state, ${this.data.steps - right - wrong - after} not judged`;
   }
   // The legend of the strip's colors.
   stripKey() {
@@ -383,7 +383,7 @@ class Viewer extends Words {
   }
   clip() {
     if (typeof MediaRecorder === "undefined" || !this.canvas.captureStream) {
-      this.say.textContent = "This browser can't record films.";
+      this.say.textContent = "This browser can't record videos.";
       return;
     }
     const recorder = new MediaRecorder(this.canvas.captureStream(30));
@@ -406,7 +406,7 @@ class Viewer extends Words {
     if (this.selected && this.selected.pair) hash.set("pair", this.selected.pair);
     history.replaceState(null, "", "#" + hash);
     copy(location.href, null);
-    this.say.textContent = "The address of this page leads to this moment now.";
+    this.say.textContent = "The address of this page now leads to this moment.";
   }
 }
 

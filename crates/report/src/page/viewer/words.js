@@ -12,16 +12,16 @@ class Words extends Drawing {
     if (apart) {
       const what =
         this.show.expected && this.expected()
-          ? "from where it should be, given your own state before the step"
+          ? "from the right position, given your own state before the step"
           : "from the reference's run";
       const isWrong = this.classWords().startsWith("wrong");
       const none = this.isExact()
         ? !isWrong
-          ? "Every position is the same to the last bit as expected."
-          : "What differs is in the tables: its positions are still the expected ones, to the last bit."
+          ? "Every position matches the expected one bit for bit."
+          : "Only the tables differ: the positions match the expected ones bit for bit."
         : "No position differs by more than the rounding of this page.";
       const furthest = `furthest particle is ${short(apart.most)} ${what}.`;
-      const some = isWrong && apart.most < CLOSE ? `What differs is in the tables: the ${furthest}` : `The ${furthest}`;
+      const some = isWrong && apart.most < CLOSE ? `Only the tables differ: the ${furthest}` : `The ${furthest}`;
       parts.push(apart.most > 0 ? some : none);
     }
     if (data.whatIf && this.step >= data.first) {
@@ -30,10 +30,10 @@ class Words extends Drawing {
       if (own && what && this.isExact(this.step, false))
         parts.push(
           same(own, what)
-            ? "The reference with the named mistake is here to the last bit."
+            ? "The reference with the named mistake is in the same state, bit for bit."
             : own.every((value, k) => Math.abs(value - what[k]) < CLOSE)
-              ? "The reference with the named mistake is here, but for round-off."
-              : "The reference with the named mistake is elsewhere.",
+              ? "The reference with the named mistake is in the same state, up to round-off."
+              : "The reference with the named mistake is in another state.",
         );
     }
     this.say.textContent = parts.join(" ");
@@ -157,7 +157,7 @@ class Words extends Drawing {
         )
           of(pair).wrong.push("its contact differs");
       }
-      for (const pair of own.keys()) if (!right.has(pair)) of(pair).wrong.push("its contact is one too many");
+      for (const pair of own.keys()) if (!right.has(pair)) of(pair).wrong.push("its contact is superfluous");
     }
     this.asking = {
       key: `${this.step} ${this.pass}`,
@@ -195,7 +195,7 @@ class Words extends Drawing {
     const head = el(
       "p",
       {},
-      `Who is tested with whom, ${asked.name}: ${asked.calls} pairs, each expected ${times(expected)}. `,
+      `Tested pairs, ${asked.name}: ${asked.calls} pairs, each expected ${times(expected)}. `,
       `In the whole step ${close.polynomials[0]} polynomials are expected, and you logged ${close.polynomials[1]}. `,
       more ? `You make ${more === 1 ? "a pass" : `${more} passes`} too many. ` : "",
       close.surplus && !more ? `${close.surplus} of yours belong to no expected call. ` : "",
@@ -223,7 +223,7 @@ class Words extends Drawing {
     const grid = el(
       "table",
       { class: "pairs" },
-      el("caption", {}, "Calls made of calls expected; * collides, ! something is wrong"),
+      el("caption", {}, "Actual calls / expected calls; * collides, ! has a fault"),
       el("thead", {}, el("tr", {}, el("td"), ...columns.map(([, , text]) => el("th", { scope: "col" }, text)))),
     );
     const body = el("tbody");
@@ -428,7 +428,7 @@ class Words extends Drawing {
         ? el(
             "p",
             { class: "hint" },
-            `${rest} ${other.length ? "more " : ""}numbers of it are the same to the last bit.`,
+            `${rest} ${other.length ? "more " : ""}numbers of it are the same bit for bit.`,
           )
         : "",
       bits,
@@ -444,8 +444,8 @@ class Words extends Drawing {
         "p",
         {},
         selected.pair
-          ? "The same bodies alone, moving as here: "
-          : "It and those that it meets in this step, moving as here: ",
+          ? "Only these bodies, moving as here: "
+          : "The selected body and the bodies that it meets in this step, moving as here: ",
         button("Copy as scene", () => this.asScene(company, false)),
         data.forces.length ? " or from the same state under the same forces: " : "",
         data.forces.length ? button("Copy with forces", () => this.asScene(company, true)) : "",

@@ -23,7 +23,7 @@ pub fn what(explanation: &Explanation) -> String {
         About::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
         About::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
-            format!("Does this trace belong to this scene? Its first record is not the scene's{length}.")
+            format!("Does this trace belong to this scene? Its first record differs from the scene's start{length}.")
         }
         About::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
         About::Stage(fault) => stages::what(fault),
@@ -66,8 +66,8 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
             Detail::Look(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
             Detail::Look(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
-            Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
-            Detail::Stage(detail) => stages::detail(detail),
+            Detail::Polynomial(detail) => Some(polynomials::describe_detail(detail)),
+            Detail::Stage(detail) => stages::describe_detail(detail),
         };
         lines.extend(line);
     }
@@ -75,7 +75,7 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
 }
 
 /// Returns only the exact form of polynomials without a known mistake, with one line per term.
-pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
+pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
     match explanation.about {
@@ -104,12 +104,12 @@ pub(crate) fn known_sentence(key: &str) -> Option<String> {
 
 /// Returns the unwritten stages, in a few words each.
 fn describe_unfinished(keys: &[String]) -> String {
-    let stages: Vec<String> = keys.iter().filter_map(|key| find(key)).map(empty_stage).collect();
+    let stages: Vec<String> = keys.iter().filter_map(|key| find(key)).map(describe_stage).collect();
     stages.join(", ")
 }
 
 /// Returns the description of an unwritten stage.
-fn empty_stage(row: &Row) -> String {
+fn describe_stage(row: &Row) -> String {
     let name = match row.mistake {
         Mistake::Step(StepMistake::Edit(edit)) => {
             return edit.term.row().subject[..1].to_lowercase() + &edit.term.row().subject[1..];
@@ -131,16 +131,16 @@ fn empty_stage(row: &Row) -> String {
 fn look_at_step(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {
-        () if has(&["fixed"]) => "Look at what a step does with fixed particles.",
+        () if has(&["fixed"]) => "Look at how a step treats fixed particles.",
         () if has(&["-hx", "-hv", "matrix", "linear-mass", "implicit-mass"]) => {
             "Look at how the system matrix is built."
         }
         () if has(&["-right", "-momentum"]) => "Look at how the right-hand side of the system is built.",
         () if has(&["newton"]) || key.starts_with("implicit") => {
-            "Look at Newton's method: what each iteration computes from what, and when it ends."
+            "Look at Newton's method: the values that each iteration uses, and when it ends."
         }
         () if key.starts_with("linear") => {
-            "Look at where forces and matrix are computed, and at what the solution of the system changes."
+            "Look at where forces and matrix are computed, and at how the solution of the system is applied."
         }
         () if has(&["-velocity", "behind"]) => Area::Integrator.advice(),
         () => "Look at how forces change velocities, and velocities change positions.",

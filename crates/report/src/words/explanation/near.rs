@@ -21,7 +21,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
         }
         let traits = pair_traits(pairs, times);
         let words = |traits: &[PairTrait]| traits.iter().map(|one| one.what.clone()).collect::<Vec<_>>();
-        let share = share(pairs, times);
+        let share = describe_share(pairs, times);
         let is_same = |other: &&mut PairFault<'_>| {
             other.times == times && other.share == share && words(&other.traits) == words(&traits)
         };
@@ -42,7 +42,7 @@ pub(super) fn what(wrong: &WrongPairs) -> String {
         return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
     }
     let of_fault = |fault: &PairFault<'_>| {
-        let names = fault.kinds.iter().map(|pairs| name(pairs.kind)).collect::<Vec<_>>().join(" and ");
+        let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
         let common: Vec<&str> = fault.traits.iter().map(|one| one.what.as_str()).collect();
         let told = format!("{} {names} are {}", fault.share, happens(fault.times));
         if common.is_empty() {
@@ -77,7 +77,7 @@ const fn happens(times: usize) -> &'static str {
 }
 
 /// Returns how many pairs of a kind are reported `times` times, as a word.
-const fn share(pairs: &PairCounts, times: usize) -> &'static str {
+const fn describe_share(pairs: &PairCounts, times: usize) -> &'static str {
     match pairs.times[1] {
         0 => "all",
         right if 20 * right <= pairs.times[times] => "nearly all",
@@ -85,7 +85,7 @@ const fn share(pairs: &PairCounts, times: usize) -> &'static str {
     }
 }
 
-const fn name(kind: PairKind) -> &'static str {
+const fn kind_name(kind: PairKind) -> &'static str {
     match kind {
         PairKind::ParticleParticle => "pairs of two particles",
         PairKind::ParticleEdge => "pairs of a particle and an edge",

@@ -21,14 +21,14 @@ use std::{
 };
 
 /// The name of a SQLite database's copy.
-const SQLITE: &str = "fosssim.db";
-const POSTGRES: &str = "fosssim.dump";
+const SQLITE_COPY: &str = "fosssim.db";
+const POSTGRES_COPY: &str = "fosssim.dump";
 
 /// Copies all data into a new folder, while the server runs.
 pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     let (folders, output) = (ServiceFolders::find(&arguments.place)?, &arguments.output);
     if output.exists() {
-        bail!("{} exists already: name a new folder", output.display());
+        bail!("{} already exists; choose a new folder", output.display());
     }
     let (database, address) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;
@@ -51,8 +51,8 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
         bail!("the database {address} is empty");
     }
     let name = match address {
-        Address::Sqlite(_) => SQLITE,
-        Address::Postgres(_) => POSTGRES,
+        Address::Sqlite(_) => SQLITE_COPY,
+        Address::Postgres(_) => POSTGRES_COPY,
     };
     let file = folder.join(name);
     match address {

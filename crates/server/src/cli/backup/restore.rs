@@ -22,7 +22,7 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     let manifest = Manifest::read(from)?;
     if manifest.tables > db::LATEST {
         bail!(
-            "the backup's tables have version {}, this program knows versions up to {}: restore it by version {}",
+            "the backup's tables have version {}, this program reads versions up to {}: restore it with version {}",
             manifest.tables,
             db::LATEST,
             manifest.version
@@ -31,10 +31,10 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     let copy = from.join(&manifest.database.file);
     let found = digest_of_file(&copy).await.with_context(|| copy.display().to_string())?;
     if found.digest != manifest.database.sha256 {
-        bail!("{} is damaged: it is not the copy that was made", copy.display());
+        bail!("{} is damaged: it differs from the copy in the manifest", copy.display());
     }
     if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
-        bail!("{} is not empty: a backup is restored into an empty data folder", place.data.display());
+        bail!("{} is not empty; a backup needs an empty data folder", place.data.display());
     }
     let restored = fill(arguments, &manifest, &copy).await;
     if restored.is_err() {
@@ -49,20 +49,20 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
     let address = folders.database(place);
-    let is_dump = manifest.database.file == super::POSTGRES;
+    let is_dump = manifest.database.file == super::POSTGRES_COPY;
     match (&address, is_dump) {
-        (Address::Sqlite(file), false) if file.exists() => bail!("the database {} is there already", file.display()),
+        (Address::Sqlite(file), false) if file.exists() => bail!("the database {} already exists", file.display()),
         (Address::Postgres(_), true) => {
             let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
             let version = db::version(&database).await?;
             database.close().await;
             if version > 0 {
-                bail!("the database {address} is not empty: restore into one that was just made");
+                bail!("the database {address} is not empty; restore into a new one");
             }
         }
         (Address::Sqlite(_), false) => {}
-        (_, true) => bail!("the backup is one of PostgreSQL: name an empty database by FOSSSIM_DATABASE"),
-        (_, false) => bail!("the backup is one of SQLite: leave out the database's address"),
+        (_, true) => bail!("the backup is from PostgreSQL; name an empty database in FOSSSIM_DATABASE"),
+        (_, false) => bail!("the backup is from SQLite; leave out the database's address"),
     }
     let store = folders.store(place)?;
     let restored = put_artifacts(&store, &from.join("store").join("sha256")).await?;

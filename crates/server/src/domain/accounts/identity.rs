@@ -15,20 +15,20 @@ use utoipa::ToSchema;
 const SESSION: i64 = 14 * 24 * 3600 * 1000;
 
 /// The maximum number of sessions of an account; a further one ends the oldest.
-const SESSIONS: i64 = 50;
+const MAX_SESSIONS: i64 = 50;
 
 /// The lifetime of a sign-in link, in milliseconds.
-const LINK: i64 = 7 * 24 * 3600 * 1000;
+const LINK_LIFETIME: i64 = 7 * 24 * 3600 * 1000;
 
 /// The age up to which a session may create further ways to sign in, such as tokens, in milliseconds.
-const RECENT: i64 = 12 * 3600 * 1000;
+const RECENT_AGE: i64 = 12 * 3600 * 1000;
 
 /// The time between two updates of a session's last use, in milliseconds.
-const SEEN_EVERY: i64 = 3600 * 1000;
+const SEEN_INTERVAL: i64 = 3600 * 1000;
 
 /// The prefix of people's tokens, which shows people and scanners the kind of token.
-pub(in crate::domain) const PERSON: &str = "fso_";
-pub(in crate::domain) const WORKER: &str = "fsw_";
+pub(in crate::domain) const PERSON_PREFIX: &str = "fso_";
+pub(in crate::domain) const WORKER_PREFIX: &str = "fsw_";
 
 /// A new secret, which is shown once.
 #[derive(Clone, PartialEq, Eq)]
@@ -125,7 +125,7 @@ pub(in crate::domain) async fn account_of_token(
     let row = transaction.row(statement, values![digest(token)]).await?;
     match row {
         Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
-        None => Err(Problem::unknown_secret("token", "make a new one on the page Account")),
+        None => Err(Problem::unknown_secret("token", "create a new one on the page Account")),
     }
 }
 
@@ -146,8 +146,8 @@ pub(in crate::domain) async fn account_of_session(
     let seen = SessionState {
         is_vouched: row.flag("vouched")?,
         is_by_token: row.maybe_int("token")?.is_some(),
-        is_recent: now - row.int("created_at")? < RECENT,
-        is_stale: now - row.int("seen_at")? > SEEN_EVERY,
+        is_recent: now - row.int("created_at")? < RECENT_AGE,
+        is_stale: now - row.int("seen_at")? > SEEN_INTERVAL,
     };
     Ok(Some((Account::from_row(&row)?, seen)))
 }
@@ -174,7 +174,7 @@ pub(in crate::domain) async fn begin_session(
     transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
     let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
         (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
-    transaction.execute(statement, values![account, account, SESSIONS]).await?;
+    transaction.execute(statement, values![account, account, MAX_SESSIONS]).await?;
     Ok(secret)
 }
 
@@ -205,7 +205,7 @@ pub(in crate::domain) async fn further_link(
     let secret = NewSecret::new("");
     let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
         VALUES (?, ?, ?, {now}, {now} + ?, ?)";
-    transaction.execute(statement, values![secret.digest(), account, by, LINK, way == Way::Vouched]).await?;
+    transaction.execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, way == Way::Vouched]).await?;
     Ok(secret)
 }
 
@@ -284,7 +284,7 @@ pub(in crate::domain) async fn new_token(
     by: i64,
     way: Way,
 ) -> Result<NewToken, DbError> {
-    let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
+    let secret = NewSecret::new(if account.is_some() { PERSON_PREFIX } else { WORKER_PREFIX });
     let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
         VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
     let row = transaction.one(statement, values![account, name, secret.digest(), by, way == Way::Vouched]).await?;

@@ -16,10 +16,10 @@ use std::{
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 
 /// The parallel transfers of all accounts. Each takes a connection, a file and about 100 KiB.
-static OF_ALL: Semaphore = Semaphore::const_new(3000);
+static ALL_TRANSFERS: Semaphore = Semaphore::const_new(3000);
 
 /// The time that an upload waits for others of the same account.
-const TURN: Duration = Duration::from_secs(30);
+const TURN_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// The maximum number of rejected archives of an account per minute.
 const REFUSED: u32 = 30;
@@ -57,9 +57,9 @@ impl TransferLimits {
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
         let most = self.transfers;
         let of_account = find_shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
-        let many = |_| Problem::too_many(format!("an account may have {most} uploads and downloads at one time"));
+        let many = |_| Problem::too_many(format!("an account may have {most} simultaneous transfers"));
         let of_account = of_account.map_err(many)?;
-        let of_all = OF_ALL.try_acquire();
+        let of_all = ALL_TRANSFERS.try_acquire();
         let of_all = of_all.map_err(|_| Problem::unavailable("too many uploads and downloads are running"))?;
         Ok(Transfer { _of_account: of_account, _of_all: of_all })
     }
@@ -67,7 +67,7 @@ impl TransferLimits {
     /// Waits until this server handles no other upload of the account.
     pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
         let turn = find_shared(&self.turns, account, Default::default);
-        let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
+        let turn = tokio::time::timeout(TURN_TIMEOUT, turn.lock_owned()).await;
         turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
     }
 }
@@ -139,9 +139,9 @@ impl Member {
     /// Checks that `size` further bytes may be stored.
     pub(in crate::domain) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
         let [student, course, server] = self.shares(transaction).await?;
-        exceeds("all that you handed in, with its reports,", student, size)?;
-        exceeds("all that was handed in in this course, with its reports,", course, size)?;
-        exceeds("all that was handed in here, with its reports,", server, size)
+        exceeds("your uploads and reports", student, size)?;
+        exceeds("the uploads and reports of this course", course, size)?;
+        exceeds("the uploads and reports on this server", server, size)
     }
 }
 
@@ -159,12 +159,12 @@ impl RoomShare {
     }
 
     fn describe(self, whose: &str) -> String {
-        let kept = format!("Uploads and reports kept of {whose}: {}", problem::size(self.bytes));
+        let kept = format!("Stored uploads and reports of {whose}: {}", problem::size(self.bytes));
         let most = problem::size(self.most);
         match self.most {
             0 => kept + ".",
             _ if self.is_nearly_all() => {
-                format!("{kept} of {most}. When all are taken nothing can be handed in: ask the administrator.")
+                format!("{kept} of {most}. When the space is used up, uploads are rejected. Ask the administrator.")
             }
             _ => format!("{kept} of {most}."),
         }
@@ -176,5 +176,5 @@ fn exceeds(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) ->
         return Ok(());
     }
     let [kept, most, size] = [kept, most, size].map(problem::size);
-    Err(Problem::quota(format!("{what} takes {kept} of {most}, and this upload has {size}")))
+    Err(Problem::quota(format!("{what} use {kept} of {most}, and this upload has {size}")))
 }

@@ -40,7 +40,7 @@ impl Newcomer<'_> {
     /// Finds the person's account, or creates it with the issuer's name. It never takes an existing account of the same
     /// name or address, because people choose these themselves.
     pub(in crate::domain) async fn find_or_make(&self, transaction: &mut Transaction) -> Result<i64, DbError> {
-        let name = self.name.map(tidy).filter(|name| !name.is_empty());
+        let name = self.name.map(clean_name).filter(|name| !name.is_empty());
         if let Some(account) = self.find(transaction).await? {
             if let Some(name) = name {
                 let statement = "UPDATE account SET name = ? WHERE id = ? AND name <> ?";
@@ -69,7 +69,7 @@ impl Newcomer<'_> {
 }
 
 /// Returns a name in the form that this service shows.
-fn tidy(name: &str) -> String {
+fn clean_name(name: &str) -> String {
     let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()
 }
@@ -103,6 +103,6 @@ mod tests {
             assert_eq!(login_of(word), login, "{word}");
             assert!(identity::check_slug("a login", &login_of(word)).is_ok());
         }
-        assert_eq!(tidy(" A\nB\u{0} "), "A B");
+        assert_eq!(clean_name(" A\nB\u{0} "), "A B");
     }
 }

@@ -16,14 +16,14 @@ use ring::hmac;
 use std::time::Instant;
 
 /// The maximum duration of a sign-in, in milliseconds.
-const LOGIN: i64 = 10 * 60 * 1000;
+const LOGIN_LIFETIME: i64 = 10 * 60 * 1000;
 
 /// The maximum number of sign-ins that an address may begin per minute at one service; a lecture hall may be one
 /// address.
-const LOGINS: u32 = 3000;
+const MAX_LOGINS: u32 = 3000;
 
 /// The message about a sign-in that did not begin here, was answered before, or took too long.
-pub(in crate::domain) const UNKNOWN: &str = "this sign-in is unknown, used or too old";
+pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
 /// A sign-in that has begun.
 pub(in crate::domain) struct BegunSignIn {
@@ -53,15 +53,15 @@ impl App {
         (secrets, known): (&Secrets, Option<&String>),
         (account, to): (i64, &str),
     ) -> Result<BegunSignIn, Problem> {
-        if !self.0.throttle.pass(throttle::bucket(secrets.address, at), LOGINS, Instant::now()) {
-            return Err(Problem::too_many("too many people sign in from your address at this moment"));
+        if !self.0.throttle.pass(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()) {
+            return Err(Problem::too_many("too many people are signing in from your address"));
         }
         // Windows of a browser share one secret.
         let is_word = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
         let browser = known.filter(is_word).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;
         let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
-        let (expires_at, shown, to) = (now + LOGIN, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
+        let (expires_at, shown, to) = (now + LOGIN_LIFETIME, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
         let words = format!("{at}.{expires_at}.{shown}.{account}.{to}.{}", random_hex());
         let state = format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, words.as_bytes())));
         Ok(BegunSignIn { state, browser })
@@ -85,15 +85,15 @@ impl App {
         refused: fn(&'static str) -> Problem,
     ) -> Result<PendingSignIn, Problem> {
         let key = self.signing_key().await?;
-        let (pending, shown) = read(&key, state).ok_or_else(|| refused(UNKNOWN))?;
+        let (pending, shown) = parse_state(&key, state).ok_or_else(|| refused(UNKNOWN_SIGN_IN))?;
         let statement = "SELECT 1 AS n WHERE CAST(? AS {int}) > {now}
             AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
         let values = values![pending.expires_at, identity::digest(state)];
         let fresh = self.0.database.read().await?.row(statement, values).await?;
-        ensure(fresh.is_some(), refused(UNKNOWN))?;
+        ensure(fresh.is_some(), refused(UNKNOWN_SIGN_IN))?;
         let browser = browser.ok_or_else(|| refused("your browser did not send the cookie of this sign-in"))?;
         // The sign-in began in another browser, whose owner may try to sign this browser in as somebody else.
-        ensure(shown == identity::digest(browser), refused("this sign-in was begun in another browser"))?;
+        ensure(shown == identity::digest(browser), refused("this sign-in began in another browser"))?;
         Ok(pending)
     }
 
@@ -125,7 +125,7 @@ impl PendingSignIn {
 }
 
 /// Reads a signed state, and the digest of the browser's secret in it.
-fn read(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
+fn parse_state(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
     let (words, tag) = state.rsplit_once('.')?;
     hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
     let mut words = words.split('.');

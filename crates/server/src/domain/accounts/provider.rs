@@ -7,7 +7,7 @@ use crate::{
         accounts::{
             identity::{self, Way},
             newcomer::Newcomer,
-            pending::UNKNOWN,
+            pending::UNKNOWN_SIGN_IN,
         },
         view::{self, Entry},
     },
@@ -17,7 +17,7 @@ use crate::{
 };
 
 /// The provider's name among the services that confirm sign-ins.
-const AT: &str = "provider";
+const PROVIDER_SERVICE: &str = "provider";
 
 impl From<ProviderFault> for Problem {
     fn from(fault: ProviderFault) -> Self {
@@ -47,7 +47,7 @@ impl App {
 
 /// Returns the provider's issuer in its stored form.
 fn issuer(provider: &Provider) -> String {
-    format!("{AT} {}", provider.issuer())
+    format!("{PROVIDER_SERVICE} {}", provider.issuer())
 }
 
 impl Visitor {
@@ -64,7 +64,7 @@ impl Visitor {
             None => 0,
         };
         let browser = (&self.secrets, self.secrets.provider.as_ref());
-        let begun = self.app.begin_sign_in(AT, browser, (account, to)).await?;
+        let begun = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
         let address = provider.address(&self.app.answer_address(), self.app.compute_words(&begun.state).await?).await?;
         Ok(LoginAnswer { address: address.into(), browser: begun.browser })
     }
@@ -77,7 +77,7 @@ impl Visitor {
         let (app, browser) = (&self.app, self.secrets.provider.as_ref());
         let provider = app.known_provider()?;
         let pending = app.pending_sign_in(state, browser, Problem::refused_sign_in).await?;
-        ensure(pending.at == AT, Problem::refused_sign_in(UNKNOWN))?;
+        ensure(pending.at == PROVIDER_SERVICE, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
         let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_words(state).await?).await?;
         let connects = match pending.account {
             0 => None,
@@ -88,7 +88,7 @@ impl Visitor {
             }
         };
         let mut transaction = app.0.database.begin().await?;
-        ensure(pending.use_up(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN))?;
+        ensure(pending.use_up(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
         let account = match connects {
             Some(connects) => connect(&mut transaction, provider, &person, &connects).await?,
             None => account(&mut transaction, provider, &person).await?,

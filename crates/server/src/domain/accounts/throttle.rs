@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The number of buckets above which full ones are dropped.
-const MANY: usize = 10_000;
+const MAX_BUCKETS: usize = 10_000;
 
 /// The token buckets of all accounts.
 #[derive(Debug, Default)]
@@ -25,7 +25,7 @@ impl Throttle {
         let level = |(level, at): (f64, Instant)| {
             (level + now.saturating_duration_since(at).as_secs_f64() * most / 60.0).min(most)
         };
-        if buckets.len() > MANY {
+        if buckets.len() > MAX_BUCKETS {
             buckets.retain(|_, bucket| level(*bucket) < most);
         }
         let bucket = buckets.entry(account).or_insert((most, now));
@@ -46,7 +46,7 @@ impl Throttle {
 
 /// Returns the bucket's number for an address and a purpose. A user of IPv6 has 2^64 addresses, so the network counts
 /// there.
-pub(in crate::domain) fn bucket(address: Option<IpAddr>, what: &str) -> i64 {
+pub(in crate::domain) fn bucket_id(address: Option<IpAddr>, what: &str) -> i64 {
     let network = address.map(|address| match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
         address @ IpAddr::V4(_) => address,

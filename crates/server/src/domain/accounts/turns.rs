@@ -9,16 +9,16 @@ use std::{
 use tokio::sync::Notify;
 
 /// The number of archives that are checked in parallel; each may need about 100 MiB, and a whole processor.
-const AT_ONE_TIME: usize = 2;
+const MAX_RUNNING: usize = 2;
 
 /// The maximum wait for a turn.
-const PATIENCE: Duration = Duration::from_secs(60);
+const WAIT_LIMIT: Duration = Duration::from_secs(60);
 
 /// The number of seconds after which used time counts half.
 const HALF_LIFE: f64 = 60.0;
 
 /// The number of accounts above which those without recent use are dropped.
-const MANY: usize = 10_000;
+const MAX_ACCOUNTS: usize = 10_000;
 
 /// The turns of all accounts.
 #[derive(Debug, Default, Clone)]
@@ -61,7 +61,7 @@ impl TurnState {
         let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
         let rank = |(ticket, account): &(&u64, &i64)| (self.used_seconds(**account, now), **ticket);
         let first = able.min_by(|one, other| rank(one).partial_cmp(&rank(other)).unwrap_or(std::cmp::Ordering::Equal));
-        first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < AT_ONE_TIME)
+        first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < MAX_RUNNING)
     }
 }
 
@@ -80,7 +80,7 @@ impl Turns {
             ticket
         };
         let mut turn = ArchiveTurn { turns: self.clone(), account, ticket, began: None };
-        let until = tokio::time::Instant::now() + PATIENCE;
+        let until = tokio::time::Instant::now() + WAIT_LIMIT;
         loop {
             let changed = self.0.changed.notified();
             tokio::pin!(changed);
@@ -113,7 +113,7 @@ impl Drop for ArchiveTurn {
         if let Some(began) = self.began {
             let place = state.running.iter().position(|account| *account == self.account);
             place.map(|place| state.running.swap_remove(place));
-            if state.taken.len() > MANY {
+            if state.taken.len() > MAX_ACCOUNTS {
                 state.taken.retain(|_, (_, at)| now.saturating_duration_since(*at).as_secs_f64() < 10.0 * HALF_LIFE);
             }
             let seconds = state.used_seconds(self.account, now) + now.saturating_duration_since(began).as_secs_f64();

@@ -72,7 +72,7 @@ pub struct Settings {
 }
 
 /// The settings that always have a value.
-const ALWAYS: [&str; 9] =
+const REQUIRED_SETTINGS: [&str; 9] =
     ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
 
 /// Reads a time, as a number or a date.
@@ -99,8 +99,8 @@ pub(crate) fn moment_schema() -> Schema {
     let date = SchemaFormat::KnownFormat(KnownFormat::DateTime);
     let date =
         ObjectBuilder::new().schema_type(Type::String).format(Some(date)).pattern(Some("^(199|2[0-9]{2})[0-9]-"));
-    let words = "No uploads of students after this moment: milliseconds since 1970, or a date with its time zone.";
-    let [early, late] = calendar::PLAUSIBLE;
+    let words = "The due date of students, in milliseconds since 1970, or as a date with its time zone.";
+    let [early, late] = calendar::MILLISECOND_RANGES;
     let null = ObjectBuilder::new().schema_type(Type::Null);
     OneOfBuilder::new().item(number(early)).item(number(late)).item(date).item(null).description(Some(words)).into()
 }
@@ -176,7 +176,7 @@ impl Settings {
         }
         for (name, value) in changes {
             match value {
-                Value::Null if ALWAYS.contains(&name.as_str()) => {
+                Value::Null if REQUIRED_SETTINGS.contains(&name.as_str()) => {
                     return Err(Problem::invalid(format!("{name} must not be null")));
                 }
                 Value::Null => drop(fields.remove(name)),
@@ -222,7 +222,7 @@ impl Settings {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
         if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
-            return Err(Problem::invalid("choose what may be handed in (forms): program, sources or traces"));
+            return Err(Problem::invalid("choose the accepted forms (forms): program, sources or traces"));
         }
         ensure(
             is_file_name(&self.program),

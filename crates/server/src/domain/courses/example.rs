@@ -35,7 +35,7 @@ impl App {
                 ON CONFLICT (login) DO NOTHING RETURNING id";
             let made = transaction.row(statement, values![STUDENT.0, STUDENT.1, course]).await?;
             let Some(student) = made else {
-                return Err(Problem::conflict("an account is called student already", "start it without --example"));
+                return Err(Problem::conflict("an account `student` already exists", "start it without --example"));
             };
             let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, 'student', {now})";
             transaction.execute(statement, values![course, student.int("id")?]).await?;

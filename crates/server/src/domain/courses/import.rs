@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use utoipa::ToSchema;
 
 /// The maximum number of lines.
-const MOST: usize = 5000;
+const MAX_LINES: usize = 5000;
 
 /// The columns, in their default order, each with its other names.
 const COLUMNS: [&[&str]; 4] = [
@@ -47,7 +47,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     let mut places = [None; COLUMNS.len()];
     for (place, word) in words.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
         if column(word).is_some_and(|column| places[column].replace(place).is_some()) {
-            return Err(Problem::invalid(format!("the column {word} is there twice")));
+            return Err(Problem::invalid(format!("the column {word} occurs twice")));
         }
     }
     match places[1] {
@@ -103,9 +103,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let error = match checked {
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("this login is in the table twice".to_owned()),
-            Ok(()) if unused.is_none() => {
-                Some("there is more in this line than name, login, email and role".to_owned())
-            }
+            Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
         lines.push(MemberLine {
@@ -118,8 +116,8 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             error,
             link: None,
         });
-        if lines.len() > MOST {
-            return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
+        if lines.len() > MAX_LINES {
+            return Err(Problem::invalid(format!("a table has at most {MAX_LINES} lines")));
         }
     }
     if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }

@@ -23,7 +23,7 @@ pub struct MemberInfo {
 }
 
 /// The number of people on a page.
-pub(in crate::domain) const PEOPLE: i64 = 200;
+pub(in crate::domain) const PEOPLE_PER_PAGE: i64 = 200;
 
 from_row! { MemberInfo { login, name, role } }
 
@@ -125,7 +125,7 @@ impl Staff {
         let is_of_others = managed_by.is_some_and(|other| other != course);
         let is_admin = self.account.is_admin;
         if is_of_others && !is_admin {
-            let detail = format!("{login} is an account of another course: an administrator adds it");
+            let detail = format!("{login} is an account of another course; ask an administrator to add it");
             return Err(Problem::not_allowed(detail));
         }
         let ends_all = is_admin && role == "staff" && !identity::is_trusted(transaction, account).await?;
@@ -201,8 +201,8 @@ impl Staff {
         let Some(row) = row else { return Err(Problem::not_found("member")) };
         let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
         if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
-            let detail = "this account is the person's own: it is more than a student of this course, or signs in \
-                at a provider";
+            let detail = "this account is not only a student of this course: it has other rights, or signs in at a \
+                provider";
             return Err(Problem::not_allowed(detail));
         }
         let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The tables with rows of submissions, in the order of removal.
-const PARTS: [&str; 10] = [
+const TABLES: [&str; 10] = [
     "DELETE FROM result_file WHERE result IN (SELECT result.id FROM result JOIN {each}
         ON result.submission = CAST(wanted.value AS {int}))",
     "DELETE FROM mark WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
@@ -57,7 +57,7 @@ async fn remove_submissions(transaction: &mut Transaction, which: &'static str, 
     let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
                   ORDER BY id {for removal}";
     transaction.rows(locked, values![&ids]).await?;
-    for statement in PARTS {
+    for statement in TABLES {
         transaction.execute(statement, values![&ids]).await?;
     }
     Ok(())

@@ -5,7 +5,7 @@ use crate::domain::{
     accounts::{
         identity::{self, Way},
         newcomer::Newcomer,
-        pending::{BegunSignIn, UNKNOWN},
+        pending::{BegunSignIn, UNKNOWN_SIGN_IN},
     },
     view::{self, Entry},
 };
@@ -19,7 +19,7 @@ use serde::Deserialize;
 use url::Url;
 
 /// The time in which staff must choose, in milliseconds.
-const CHOICE: i64 = 3600 * 1000;
+const CHOICE_LIFETIME: i64 = 3600 * 1000;
 
 /// A platform's message about a person who wants to sign in (LTI 4.1, SEC 5.1.1.1).
 #[derive(Debug, Clone, Deserialize)]
@@ -94,7 +94,7 @@ impl Visitor {
         match rows.as_slice() {
             [row] => Ok(Platform::from_row(row)?),
             [] => Err(Problem::refused_launch("no administrator has registered this platform")),
-            _ => Err(Problem::refused_launch("the platform is registered several times, and does not say which it is")),
+            _ => Err(Problem::refused_launch("the platform has several registrations, and sent no client ID")),
         }
     }
 
@@ -136,14 +136,14 @@ impl Visitor {
         let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
         let number: i64 = pending.at.parse().unwrap_or_default();
         let platform = self.app.0.database.read().await?.find(statement, values![number]).await?;
-        let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN))?;
+        let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN_SIGN_IN))?;
         let nonce = identity::digest(&self.app.word_of("nonce", state).await?);
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
-            return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
+            return Err(Problem::refused_launch("the platform says that you have no role in this course"));
         };
         let mut transaction = self.app.0.database.begin().await?;
-        ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN))?;
+        ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
         let launched = arrive(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
@@ -193,7 +193,7 @@ async fn arrive(
     }
     enrol(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
-        ensure(staff, Problem::refused_launch("only teachers of the course can make links"))?;
+        ensure(staff, Problem::refused_launch("only teachers of the course can create links"))?;
         return choose(transaction, platform, arrival, account).await;
     };
     let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
@@ -272,7 +272,7 @@ async fn choose(
     transaction.execute(expired, values![]).await?;
     let statement =
         "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
-    transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE]).await?;
+    transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE_LIFETIME]).await?;
     // The choice could make a student's account staff.
     if !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;

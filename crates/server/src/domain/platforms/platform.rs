@@ -158,7 +158,7 @@ impl Staff {
         let places = transaction.rows(statement, values![self.course]).await?;
         drop(transaction);
         if places.is_empty() {
-            let detail = "no learning platform has the members of this course";
+            let detail = "this course is connected with no learning platform";
             return Err(Problem::conflict(detail, "open an assignment from the platform once, as a teacher there"));
         }
         let mut read = RosterRead::default();

@@ -2,7 +2,7 @@
 use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Link, NewToken, TokenInfo, Way},
-    courses::members::PEOPLE,
+    courses::members::PEOPLE_PER_PAGE,
     view::{self, Account, Course, Entry, Event, Queue},
 };
 use crate::{
@@ -39,7 +39,7 @@ pub(in crate::domain) async fn make_course(
     let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
         ON CONFLICT (slug) DO NOTHING RETURNING id";
     let made = transaction.row(statement, values![slug, title]).await?;
-    let made = made.ok_or_else(|| Problem::conflict("a course has this name already", "give it another name"))?;
+    let made = made.ok_or_else(|| Problem::conflict("a course with this name exists", "give it another name"))?;
     Ok(made.int("id")?)
 }
 
@@ -95,11 +95,11 @@ impl Admin {
         let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
                AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
             ORDER BY login LIMIT ?";
-        let (words, most) = (words.trim(), PEOPLE + 1);
+        let (words, most) = (words.trim(), PEOPLE_PER_PAGE + 1);
         let values = values![after, words.to_lowercase(), words, most];
         let mut accounts: Vec<Account> = transaction.all(statement, values).await?;
         let has_more = accounts.len() as i64 == most;
-        accounts.truncate(PEOPLE as usize);
+        accounts.truncate(PEOPLE_PER_PAGE as usize);
         Ok((accounts, has_more))
     }
 

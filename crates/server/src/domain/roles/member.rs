@@ -135,7 +135,7 @@ impl Member {
         };
         if let Some(shown) = ShownGrade::read(&kept) {
             shown.cover(&mut grade.outcome, STUDENT_PAGE);
-            grade.created_at = shown::hour(grade.created_at);
+            grade.created_at = shown::round_to_hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);
             submission.overrule();

@@ -20,7 +20,7 @@ pub struct Remote {
 }
 
 /// The maximum size of a report, in bytes.
-const MAX_FILE: u64 = 256 << 20;
+const MAX_FILE_BYTES: u64 = 256 << 20;
 
 impl From<SourceError> for Problem {
     fn from(error: SourceError) -> Self {
@@ -31,7 +31,7 @@ impl From<SourceError> for Problem {
             }
             SourceError::Refused(error) => Self::invalid(error),
             SourceError::Dismissed => {
-                Self::unknown_secret("worker token", "ask the server's administrator for a new one")
+                Self::unknown_secret("worker token", "ask the server's administrator for a new token")
             }
         }
     }
@@ -79,7 +79,7 @@ impl Remote {
     pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
         let fault = fault.map(|fault| strip_controls(fault, 2000));
         let source = self.source().with_version(strip_controls(version, 60));
-        source.tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
+        source.tick(slots.min(MAX_SLOTS), fault.as_deref()).await?;
         let tick_every = self.app.0.policy.tick_every().as_millis();
         let tick_every = u64::try_from(tick_every).unwrap_or(u64::MAX);
         Ok(Manners { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
@@ -136,8 +136,8 @@ impl Remote {
             ensure(is_number, Problem::invalid("points and seconds must be numbers"))?;
         }
         let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MOST_POINTS))
-            && !(0.0..=most.min(MOST_POINTS)).contains(&points)
+        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MAX_POINTS))
+            && !(0.0..=most.min(MAX_POINTS)).contains(&points)
         {
             return Err(Problem::invalid("points must be between 0 and the maximum"));
         }
@@ -217,13 +217,13 @@ impl Remote {
     ///
     /// When the worker does not hold the job.
     pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
-        self.leased_task(lease).await.map(|_| MAX_FILE)
+        self.leased_task(lease).await.map(|_| MAX_FILE_BYTES)
     }
 }
 
 /// A number of points that no suite reaches.
-const MOST_POINTS: f64 = 1e9;
-const MANY_SLOTS: usize = 256;
+const MAX_POINTS: f64 = 1e9;
+const MAX_SLOTS: usize = 256;
 
 /// Returns untrusted text on one line, without control characters, cut to `most`.
 fn strip_controls(text: &str, most: usize) -> String {

@@ -65,7 +65,7 @@ impl App {
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
         let row = transaction.row(statement, values![identity::digest(token)]).await?;
         let Some(row) = row else {
-            return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new one"));
+            return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new token"));
         };
         Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
     }

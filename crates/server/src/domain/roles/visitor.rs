@@ -29,13 +29,13 @@ pub struct Visitor {
 }
 
 /// The maximum number of sign-ins by link or token from one address per minute; a lecture hall may share an address.
-const SIGN_INS: u32 = 600;
+const MAX_SIGN_INS: u32 = 600;
 
 impl Visitor {
     fn count_sign_in(&self) -> Result<(), Problem> {
-        let bucket = throttle::bucket(self.secrets.address, "sign-in");
-        let passes = self.app.0.throttle.pass(bucket, SIGN_INS, Instant::now());
-        ensure(passes, Problem::too_many("too many people sign in from your address at this moment"))
+        let bucket = throttle::bucket_id(self.secrets.address, "sign-in");
+        let passes = self.app.0.throttle.pass(bucket, MAX_SIGN_INS, Instant::now());
+        ensure(passes, Problem::too_many("too many people are signing in from your address"))
     }
 
     /// Signs in with a link, which is used up.

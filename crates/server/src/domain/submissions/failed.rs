@@ -24,7 +24,7 @@ pub struct AttemptChange {
 
 impl AttemptChange {
     /// Returns the difference between two attempts.
-    pub fn between(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
+    pub fn compare(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
         let names = |scenes: &FailedScenes| scenes.keys().cloned().collect::<BTreeSet<_>>();
         let (old, new) = (names(old), names(new));
         Self { since, right: (&old - &new).into_iter().collect(), wrong: (&new - &old).into_iter().collect() }
@@ -83,7 +83,7 @@ impl Member {
         let kept = self.kept_results(&results).await?;
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
-            let change = AttemptChange::between(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
+            let change = AttemptChange::compare(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
             Some((later.id, change))
         };
         Ok(graded.windows(2).filter_map(change).collect())
@@ -98,7 +98,7 @@ mod tests {
     fn an_attempt_makes_scenes_right_and_others_wrong() {
         let (old, new) = (read("WA a/b\nTLE a/c d\n"), read("WA a/c d\nRTE e"));
         assert_eq!(old["a/c d"], "TLE");
-        let change = AttemptChange::between(3, &old, &new);
+        let change = AttemptChange::compare(3, &old, &new);
         assert_eq!((change.right, change.wrong), (vec!["a/b".to_owned()], vec!["e".to_owned()]));
         assert_eq!(read(""), FailedScenes::new());
     }

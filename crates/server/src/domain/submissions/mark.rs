@@ -13,7 +13,7 @@ use crate::{
 };
 
 /// The maximum length of a comment or a request.
-const LONGEST: usize = 2000;
+const MAX_TEXT_LENGTH: usize = 2000;
 
 /// A student's work on an assignment.
 #[derive(Debug, Clone)]
@@ -64,8 +64,8 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
             hidden.escape_unicode()
         )));
     }
-    let is_fit = (least..=LONGEST).contains(&length);
-    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {LONGEST} characters")))
+    let is_fit = (least..=MAX_TEXT_LENGTH).contains(&length);
+    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {MAX_TEXT_LENGTH} characters")))
 }
 
 impl Staff {
@@ -83,7 +83,7 @@ impl Staff {
     ) -> Result<Submission, Problem> {
         check_words("a comment", comment, 0)?;
         if points.is_some() && comment.is_empty() {
-            return Err(Problem::conflict("other points need a reason", "say it in the comment"));
+            return Err(Problem::conflict("different points need a reason", "write it in the comment"));
         }
         let is_number = |text: &str| {
             text.len() <= 30
@@ -221,11 +221,11 @@ impl Member {
         let mut transaction = self.app.0.database.begin().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         if submission.account != self.account.id {
-            return Err(Problem::not_allowed("this is for the person who handed it in"));
+            return Err(Problem::not_allowed("only the person who submitted it can do this"));
         }
         let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
-        if before.chars().count() + text.chars().count() > 5 * LONGEST {
-            return Err(Problem::conflict("your requests are too long together", "speak with the course's staff"));
+        if before.chars().count() + text.chars().count() > 5 * MAX_TEXT_LENGTH {
+            return Err(Problem::conflict("your requests are too long altogether", "talk to the course's staff"));
         }
         let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
         let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})

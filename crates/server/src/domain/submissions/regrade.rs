@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
 /// The maximum number of changes in one answer.
-const CHANGES: i64 = 1000;
+const MAX_CHANGES: i64 = 1000;
 
 /// The state of a regrade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
@@ -156,7 +156,7 @@ impl Staff {
             return Err(Problem::conflict(
                 match missing {
                     1 => "1 submission arrived meanwhile, and is graded now".to_owned(),
-                    _ => format!("{missing} submissions arrived meanwhile, and are graded now"),
+                    _ => format!("{missing} submissions arrived since the regrade began, and are being graded"),
                 },
                 "check them, then apply",
             ));
@@ -282,8 +282,8 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
             old.version AS old_version, old.task AS old_task",
         "AND job.submission > ? ORDER BY job.submission LIMIT ?"
     );
-    regrade.changes = transaction.all(statement, values![id, after, CHANGES]).await?;
-    let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == CHANGES);
+    regrade.changes = transaction.all(statement, values![id, after, MAX_CHANGES]).await?;
+    let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == MAX_CHANGES);
     regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
     Ok(regrade)
 }
@@ -300,7 +300,7 @@ impl FromRow for Change {
 /// Returns the differences between two gradings of one submission.
 fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
-        return Ok(vec!["there was no grade before".to_owned()]);
+        return Ok(vec!["there was no earlier grade".to_owned()]);
     };
     let mut why = Vec::new();
     let new_version = row.text("new_version")?;

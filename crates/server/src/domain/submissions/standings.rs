@@ -73,15 +73,15 @@ pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer
 type SharedAnswer = tokio::sync::Mutex<Option<(Instant, Arc<Vec<ShortStanding>>)>>;
 
 /// The number of answers above which those without waiting requests are dropped.
-const MANY: usize = 32;
+const MAX_ANSWERS: usize = 32;
 
 /// The number of submissions that are read completely in one statement.
-const PAGE: usize = 500;
+const PAGE_SIZE: usize = 500;
 
 impl SharedStandings {
     fn answer_for(&self, assignment: i64) -> Arc<SharedAnswer> {
         let mut answers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if answers.len() > MANY {
+        if answers.len() > MAX_ANSWERS {
             answers.retain(|_, answer| Arc::strong_count(answer) > 1);
         }
         answers.entry(assignment).or_default().clone()
@@ -127,7 +127,7 @@ impl Staff {
         let ids: Vec<i64> = short.iter().filter_map(|one| Some(one.counts.as_ref()?.id)).collect();
         let mut submissions = HashMap::new();
         let mut transaction = self.app.0.database.read().await?;
-        for ids in ids.chunks(PAGE) {
+        for ids in ids.chunks(PAGE_SIZE) {
             let read = view::submissions_named(&mut transaction, ids).await?;
             submissions.extend(read.into_iter().map(|submission| (submission.id, submission)));
         }

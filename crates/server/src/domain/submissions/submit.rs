@@ -21,7 +21,7 @@ use std::{
 
 /// The maximum time that an upload waits for earlier ones: at a deadline, no upload is rejected after its request was
 /// accepted.
-const CROWD: Duration = Duration::from_secs(240);
+const CROWD_TIMEOUT: Duration = Duration::from_secs(240);
 
 const MINUTE: i64 = 60 * 1000;
 const HOUR: i64 = 60 * MINUTE;
@@ -74,7 +74,7 @@ impl Member {
         }
         drop(transaction);
         let artifact = self.app.0.store.put_file(upload.file).await?;
-        let mut transaction = self.app.0.database.begin_within(CROWD).await?;
+        let mut transaction = self.app.0.database.begin_within(CROWD_TIMEOUT).await?;
         // Uploads of one student are handled one after another, because numbers are assigned and limits counted here.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
@@ -147,8 +147,8 @@ impl Member {
         let Some(row) = row else { return Ok(None) };
         if row.int("assignment")? != assignment.id || row.text("digest")? != artifact.digest.as_str() {
             return Err(Problem::conflict(
-                "this key was used for another upload",
-                "give every upload a key of its own",
+                "this key was already used for another upload",
+                "use a different key for every upload",
             ));
         }
         Ok(Some(self.find_submission(transaction, row.int("submission")?).await?))
@@ -173,7 +173,7 @@ impl Member {
             transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
         let due = mark::due(transaction, assignment, self.account.id).await?;
         if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
-            return Err(Problem::conflict("the due date is over", "ask the course's staff"));
+            return Err(Problem::conflict("the due date has passed", "ask the course's staff"));
         }
         if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
             return Err(Problem::conflict(

@@ -22,7 +22,7 @@ use std::path::Path;
 use utoipa::ToSchema;
 
 /// The maximum size of a suite's archive, in bytes.
-const SUITE: u64 = 64 << 20;
+const MAX_SUITE_BYTES: u64 = 64 << 20;
 
 /// The new state of an assignment. Parts and settings that are not given stay as they are; a setting that is null is
 /// removed.
@@ -77,7 +77,7 @@ pub(super) struct Extension {
 /// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite. Groups that it hides
 /// are withheld, even if others were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
-    params(("revision" = Option<i64>, Query, description = "The revision of the assignment that the change is of")),
+    params(("revision" = Option<i64>, Query, description = "The revision that the change is based on")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
@@ -96,7 +96,7 @@ pub(in crate::web) async fn receive_suite(
     asked: &Revision,
     request: Request,
 ) -> Result<Assignment, Problem> {
-    let received = upload::receive(&staff.app, request, SUITE).await?;
+    let received = upload::receive(&staff.app, request, MAX_SUITE_BYTES).await?;
     let app = &staff.app;
     ensure(std::fs::metadata(&received.file)?.len() > 0, Problem::no_suite("the file is empty"))?;
     let folder = tempfile::tempdir_in(&app.incoming)?;
@@ -109,13 +109,13 @@ pub(in crate::web) async fn receive_suite(
 }
 
 /// The maximum size of a `suite.toml`, in bytes.
-const SUITE_FILE: u64 = 1 << 20;
+const MAX_SUITE_FILE_BYTES: u64 = 1 << 20;
 
 /// Checks that the scenes of a suite are in the archive, or are scenes of the grader; otherwise a worker would read
 /// other files of its machine. Returns the suite without its digest.
 fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     let file = folder.join("suite.toml");
-    if std::fs::metadata(&file).is_ok_and(|file| file.len() > SUITE_FILE) {
+    if std::fs::metadata(&file).is_ok_and(|file| file.len() > MAX_SUITE_FILE_BYTES) {
         return Err(Problem::no_suite("suite.toml is larger than a mebibyte"));
     }
     let Ok(text) = std::fs::read_to_string(&file) else {

@@ -37,7 +37,7 @@ pub(super) struct MemberWish {
 
 /// Removes a course with its assignments, submissions and log, forever. Accounts stay.
 #[utoipa::path(delete, path = "/api/v1/courses/{course}", tag = "administration",
-    params(("confirm" = String, Query, description = "The course's name once more")),
+    params(("confirm" = String, Query, description = "The course's name, as confirmation")),
     responses((status = 204, description = "Removed")))]
 pub(super) async fn remove_course(
     admin: Admin,
@@ -45,7 +45,7 @@ pub(super) async fn remove_course(
     QueryInput(asked): QueryInput<Confirm>,
 ) -> Result<StatusCode, Problem> {
     if asked.confirm != course {
-        return Err(Problem::conflict("confirm must be the course's name", "name the course once more in confirm"));
+        return Err(Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm"));
     }
     admin.remove_course(&course).await?;
     Ok(StatusCode::NO_CONTENT)

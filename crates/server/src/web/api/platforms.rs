@@ -20,7 +20,7 @@ pub(super) struct RosterParameters {
 /// Reads the members of the course from the connected platforms.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/roster", tag = "courses",
     params(("preview" = Option<bool>, Query, description = "Only report who would be added and removed"),
-        ("confirm" = Option<bool>, Query, description = "Also if more than a third would be removed")),
+        ("confirm" = Option<bool>, Query, description = "Proceed even if more than a third would be removed")),
     responses((status = 200, body = RosterRead)))]
 pub(super) async fn roster(
     staff: Staff,

@@ -33,7 +33,7 @@ pub(super) struct UploadParameters {
     params(("name" = Option<String>, Query, description = "The file's name"),
         ("form" = Option<String>, Query, description = "program, sources or traces; otherwise recognized from the \
             file"),
-        ("Idempotency-Key" = Option<String>, Header, description = "The sender's own name for this upload")),
+        ("Idempotency-Key" = Option<String>, Header, description = "The sender's key for this upload")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 201, body = Submission), (status = 200, body = Submission)))]
 pub(super) async fn submit(
@@ -71,7 +71,7 @@ pub(in crate::web) async fn receive(
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
     let came_at = match member.check_announced(assignment, announced, since).await {
         Ok(came_at) => came_at,
-        Err(problem) => return Err(upload::refuse(&member.app, request, most, problem).await),
+        Err(problem) => return Err(upload::reject(&member.app, request, most, problem).await),
     };
     let received = upload::receive(&member.app, request, most).await?;
     let too_long = since.elapsed().saturating_sub(upload::fair_time(std::fs::metadata(&received.file)?.len()));

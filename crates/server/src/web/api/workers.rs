@@ -70,7 +70,7 @@ pub(super) async fn artifact(
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let opened = remote.artifact(&lease(&headers)?, &digest).await?;
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
-    Ok((kind, download::whole(opened, None)).into_response())
+    Ok((kind, download::whole_answer(opened, None)).into_response())
 }
 
 /// Stores a report of a job that the worker holds; its bytes must match the digest.

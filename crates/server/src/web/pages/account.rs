@@ -6,7 +6,7 @@ use super::{
     },
     Page, PageFrame,
     course::{Row, rows},
-    see, show, text,
+    redirect_to, show, text,
 };
 use crate::{
     domain::{Course, Member, Person, TokenInfo},
@@ -16,7 +16,7 @@ use askama::Template;
 use axum::response::Redirect;
 
 /// The number of courses above which an administrator sees only the assignments of their own.
-const FEW: usize = 5;
+const MAX_COURSES: usize = 5;
 
 #[derive(Template)]
 #[template(path = "home.html")]
@@ -53,7 +53,7 @@ pub(super) async fn home(person: Person) -> Page {
     let frame = PageFrame::for_account(&person.account);
     let (mut courses, mut others) = (Vec::new(), Vec::new());
     for course in person.courses().await? {
-        if course.role == "admin" && courses.len() >= FEW {
+        if course.role == "admin" && courses.len() >= MAX_COURSES {
             others.push(course.course);
             continue;
         }

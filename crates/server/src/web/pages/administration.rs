@@ -6,7 +6,7 @@ use super::{
     },
     Page, PageFrame,
     course::People,
-    see, show, text,
+    redirect_to, show, text,
 };
 use crate::{
     domain::{Account, Admin, CourseSize, Event, Queue, TokenInfo},

@@ -42,7 +42,7 @@ fn place(scene: &str) -> String {
 }
 
 /// Returns the scenes that two results judge differently.
-fn differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
+fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
     let code = |of: &FailedScenes, scene: &String| of.get(scene).map_or("AC", String::as_str).to_owned();
     let mut kinds = DifferingScenes::new();
@@ -72,9 +72,9 @@ pub(super) async fn page(
     let results = [result(&one)?, result(&other)?];
     let kept = staff.kept_results(&results).await?;
     let [Some(first), Some(second)] = results.map(|result| kept.get(&result)) else { return Err(missing()) };
-    let kinds = differing(&first.failed, &second.failed);
+    let kinds = find_differing(&first.failed, &second.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
-    let frame = grades::frame(&staff, &assignment).then(address, "Side by side");
+    let frame = grades::class_frame(&staff, &assignment).then(address, "Side by side");
     show(&ComparisonPage { frame, slug, both: [one, other], count: kinds.values().map(Vec::len).sum(), kinds })
 }
 
@@ -89,7 +89,7 @@ mod tests {
         };
         let (one, other) =
             (of(&[("a", "WA"), ("b", "WA"), ("c", "TLE"), ("e", "WA")]), of(&[("b", "WA"), ("c", "WA"), ("d", "WA")]));
-        let kinds = differing(&one, &other);
+        let kinds = find_differing(&one, &other);
         let told: Vec<String> =
             kinds.iter().map(|(codes, scenes)| format!("{}: {}", codes.join(" "), scenes.join(" "))).collect();
         assert_eq!(told, ["AC WA: d", "TLE WA: c", "WA AC: a e"]);

@@ -9,8 +9,8 @@ use axum::{
 
 /// Returns the page with its own, stricter policy, which allows only its WebAssembly module.
 pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
-    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page that checks traces: the grader has none"))?;
-    let policy = policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
+    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page /check: the grader was built without it"))?;
+    let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
     let mut answer = Html(page).into_response();
     if let Some(policy) = policy {
         answer.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
@@ -20,7 +20,7 @@ pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
 }
 
 /// Returns the policy in the head of a page.
-fn policy(page: &str) -> Option<&str> {
+fn find_policy(page: &str) -> Option<&str> {
     let (_, rest) = page.split_once("http-equiv=\"Content-Security-Policy\" content=\"")?;
     Some(rest.split_once('"')?.0)
 }

@@ -1,7 +1,7 @@
 //! A course's pages: its assignments, members, queue and audit log.
 use super::{
     super::input::{AddressParts, Fields, ListEnd, QueryInput},
-    Page, PageFrame, see, show, text,
+    Page, PageFrame, redirect_to, show, text,
 };
 use crate::{
     domain::{Assignment, AssignmentChange, Event, Member, MemberInfo, Overview, Queue, Staff, Submission},
@@ -152,12 +152,12 @@ pub(super) async fn course(member: Member) -> Page {
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
     let slug = form.slug.trim();
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
-        return Err(Problem::conflict("an assignment has this name already", "give it another name"));
+        return Err(Problem::conflict("an assignment with this name already exists", "give it another name"));
     }
     let change =
         AssignmentChange { title: Some(form.title.trim()), visible: Some(false), ..AssignmentChange::default() };
     staff.set_assignment(slug, change, |before| Ok(before.clone())).await?;
-    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.slug)))
+    Ok(redirect_to(&format!("/c/{}/a/{slug}/settings", staff.slug)))
 }
 
 /// The filter of people: text in the login or name, a role in the course, and the login to start after.
@@ -172,7 +172,7 @@ pub(super) struct People {
 }
 
 /// The maximum number of members on a page.
-const PEOPLE: usize = 200;
+const PEOPLE_PER_PAGE: usize = 200;
 
 impl People {
     /// Returns whether the filter includes a member.
@@ -200,8 +200,8 @@ async fn members_page(staff: &Staff, look: People, link: Option<(String, String)
     members.retain(|member| look.wants(member));
     // The database may sort in another order.
     members.sort_by(|one, other| one.login.cmp(&other.login));
-    let has_more = members.len() > PEOPLE;
-    members.truncate(PEOPLE);
+    let has_more = members.len() > PEOPLE_PER_PAGE;
+    members.truncate(PEOPLE_PER_PAGE);
     let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
     let platforms = staff.platforms().await?;
     show(&MembersPage { frame, slug, members, students, staff: staff_count, look, after, platforms, seen, link })

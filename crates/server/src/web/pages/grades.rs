@@ -1,7 +1,7 @@
 //! The pages of the class and of regrades.
 use super::{
     super::input::{AddressParts, Fields, ListStart, QueryInput},
-    Page, PageFrame, scenes, see,
+    Page, PageFrame, redirect_to, scenes,
     settings::{Grading, SuiteOption, suites},
     show,
     statistics::{self, Statistics},
@@ -27,7 +27,7 @@ struct GradesPage {
     slug: String,
     assignment: Assignment,
     standings: Vec<Standing>,
-    look: Look,
+    look: GradesQuery,
     /// The number of students that match.
     found: usize,
     before: Option<String>,
@@ -55,11 +55,11 @@ struct RegradePage {
 }
 
 /// The maximum number of students on a page.
-const PAGE: usize = 100;
+const PAGE_SIZE: usize = 100;
 
 /// The filter of students, their order, and the page.
 #[derive(Deserialize)]
-pub(super) struct Look {
+pub(super) struct GradesQuery {
     #[serde(default)]
     q: String,
     #[serde(default)]
@@ -73,7 +73,7 @@ pub(super) struct Look {
     page: Option<usize>,
 }
 
-impl Look {
+impl GradesQuery {
     /// Returns the students on the page, their number on all pages, and the addresses of the pages before and after.
     fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
@@ -96,7 +96,7 @@ impl Look {
             _ => {}
         }
         let found = standings.len();
-        let pages = found.div_ceil(PAGE).max(1);
+        let pages = found.div_ceil(PAGE_SIZE).max(1);
         let page = self.page.unwrap_or(1).clamp(1, pages);
         let address = |page: usize| {
             let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
@@ -104,7 +104,7 @@ impl Look {
             query.append_pair("mistake", &self.mistake).append_pair("page", &page.to_string());
             query.finish()
         };
-        let shown = standings.into_iter().skip((page - 1) * PAGE).take(PAGE).cloned().collect();
+        let shown = standings.into_iter().skip((page - 1) * PAGE_SIZE).take(PAGE_SIZE).cloned().collect();
         (shown, found, [(page > 1).then(|| address(page - 1)), (page < pages).then(|| address(page + 1))])
     }
 }
@@ -117,7 +117,7 @@ pub(super) struct NewRegrade {
 }
 
 /// Returns the frame for the pages of the class.
-pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
+pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
 }
@@ -125,7 +125,7 @@ pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
 pub(super) async fn class(
     staff: Staff,
     AddressParts { course: slug, assignment, .. }: AddressParts,
-    QueryInput(look): QueryInput<Look>,
+    QueryInput(look): QueryInput<GradesQuery>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let standings = staff.short_standings(&assignment).await?;
@@ -136,7 +136,7 @@ pub(super) async fn class(
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
     let kept = staff.kept_results(&results).await?;
     show(&GradesPage {
-        frame: frame(&staff, &assignment),
+        frame: class_frame(&staff, &assignment),
         slug,
         look,
         found,
@@ -162,7 +162,7 @@ pub(super) async fn begin(
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.over(&staff.assignment(&assignment).await?.settings)?;
     let regrade = staff.regrade(&assignment, form.reason.trim(), &settings).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 
 pub(super) async fn show_regrade(
@@ -173,7 +173,7 @@ pub(super) async fn show_regrade(
     let assignment = staff.assignment(&assignment).await?;
     let regrade = staff.show_regrade(&assignment.slug, id, asked.after).await?;
     let address = format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug);
-    show(&RegradePage { frame: frame(&staff, &assignment).then(address, "Regrade"), slug, assignment, regrade })
+    show(&RegradePage { frame: class_frame(&staff, &assignment).then(address, "Regrade"), slug, assignment, regrade })
 }
 
 deeds! {

@@ -11,7 +11,7 @@ macro_rules! deeds {
             $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Fields($form): Fields<$fields>)?
         ) -> Result<Redirect, Problem> {
             $do.await?;
-            Ok(see(&format!($to $(, $part)*)))
+            Ok(redirect_to(&format!($to $(, $part)*)))
         })*
     };
 }
@@ -225,13 +225,13 @@ type Page = Result<Html<String>, Problem>;
 /// Returns a page from its template.
 fn show(template: &impl Template) -> Page {
     template.render().map(Html).map_err(|error| {
-        tracing::error!(%error, "a page could not be made");
+        tracing::error!(%error, "a page could not be rendered");
         Problem::fault()
     })
 }
 
 /// Redirects after a form was sent, to a page that can be reloaded.
-fn see(address: &str) -> Redirect {
+fn redirect_to(address: &str) -> Redirect {
     Redirect::to(address)
 }
 
@@ -258,7 +258,7 @@ pub(super) async fn show_others(request: Request, next: Next) -> Response {
 }
 
 /// Returns the answer for addresses without a page.
-pub(super) async fn missing() -> Problem {
+pub(super) async fn no_page() -> Problem {
     Problem::not_found("page")
 }
 
@@ -275,7 +275,7 @@ fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
         let to = wanted.path_and_query().map_or("/", PathAndQuery::as_str);
         let query = byte_serialize(to.as_bytes()).collect::<String>();
         let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
-        return see(&address).into_response();
+        return redirect_to(&address).into_response();
     }
     let status = problem.status();
     match show(&ProblemPage { frame: PageFrame::default(), problem }) {

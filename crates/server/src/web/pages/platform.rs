@@ -4,7 +4,7 @@ use super::{
         input::{AddressParts, Fields},
         who::browser_cookie,
     },
-    Page, PageFrame, see, show, sign_in,
+    Page, PageFrame, redirect_to, show, sign_in,
 };
 use crate::{
     domain::{Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
@@ -154,7 +154,7 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> 
         });
     };
     let launched = visitor.launch(state, token).await?;
-    Ok(sign_in::enter(&visitor.app, &launched.session, &launched.to))
+    Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.to))
 }
 
 /// Returns the service's public keys, at the address that platforms read.
@@ -202,7 +202,7 @@ pub(super) async fn choose_assignment(
     Fields(choice): Fields<AssignmentChoice>,
 ) -> Result<Response, Problem> {
     match person.choose_assignment(&secret, &choice.assignment).await? {
-        LinkStep::Assignment(path) => Ok(see(&path).into_response()),
+        LinkStep::Assignment(path) => Ok(redirect_to(&path).into_response()),
         LinkStep::Answer { address, origins, token } => {
             let page =
                 show(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();
@@ -239,7 +239,7 @@ pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) 
     let members = format!("/c/{}/members", staff.slug);
     if form.confirm.is_some() {
         staff.read_roster(RosterWish::Confirmed).await?;
-        return Ok(see(&members).into_response());
+        return Ok(redirect_to(&members).into_response());
     }
     let read = staff.read_roster(RosterWish::Preview).await?;
     let frame = PageFrame::course(&staff).then(members, "Members");

@@ -1,7 +1,7 @@
 //! The pages for signing in at an OpenID Connect provider.
 use super::{
     super::{input::QueryInput, who::provider_cookie},
-    see,
+    redirect_to,
     sign_in::{self, NextPage},
 };
 use crate::{
@@ -25,7 +25,7 @@ pub(super) struct Answer {
 
 /// Redirects to the provider and sets a cookie that identifies the browser on return. The browser returns by opening a
 /// page, so `Lax` is sufficient.
-fn lead(app: &App, begun: &LoginAnswer) -> Response {
+fn redirect(app: &App, begun: &LoginAnswer) -> Response {
     let secure = if app.is_secure() { "; Secure" } else { "" };
     let (name, word) = (provider_cookie(app.is_secure()), &begun.browser);
     let cookie = format!("{name}={word}; Path=/; HttpOnly; SameSite=Lax; Max-Age=600{secure}");
@@ -37,10 +37,10 @@ pub(super) async fn begin(
     visitor: Visitor,
     QueryInput(NextPage { to }): QueryInput<NextPage>,
 ) -> Result<Response, Problem> {
-    match visitor.begin_at_provider(sign_in::local(&to), None).await {
-        Ok(begun) => Ok(lead(&visitor.app, &begun)),
+    match visitor.begin_at_provider(sign_in::local_path(&to), None).await {
+        Ok(begun) => Ok(redirect(&visitor.app, &begun)),
         Err(problem) if problem.status() == StatusCode::SERVICE_UNAVAILABLE => {
-            let page = sign_in::ways(&visitor, to, problem.detail)?;
+            let page = sign_in::render_ways(&visitor, to, problem.detail)?;
             Ok((StatusCode::SERVICE_UNAVAILABLE, page).into_response())
         }
         Err(problem) => Err(problem),
@@ -49,7 +49,7 @@ pub(super) async fn begin(
 
 pub(super) async fn connect(visitor: Visitor, person: Person) -> Result<Response, Problem> {
     let begun = visitor.begin_at_provider("/account", Some(&person)).await?;
-    Ok(lead(&visitor.app, &begun))
+    Ok(redirect(&visitor.app, &begun))
 }
 
 pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
@@ -60,7 +60,7 @@ pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answ
         });
     };
     let signed_in = visitor.sign_in_by_provider(state, code).await?;
-    Ok(sign_in::enter(&visitor.app, &signed_in.session, sign_in::local(&signed_in.to)))
+    Ok(sign_in::start_session(&visitor.app, &signed_in.session, sign_in::local_path(&signed_in.to)))
 }
 
 deeds! {

@@ -4,7 +4,7 @@ use super::{
         api::{self, Revision},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, see, show, text,
+    Page, PageFrame, redirect_to, show, text,
 };
 use crate::{
     calendar,
@@ -16,7 +16,7 @@ use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
 
 /// The prefix of an uploaded suite's value in the list of suites, followed by its digest.
-const UPLOADED: &str = "(uploaded)";
+const UPLOADED_PREFIX: &str = "(uploaded)";
 
 const MIB: f64 = 1_048_576.0;
 
@@ -40,7 +40,7 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
         let name = if name.is_empty() { text::short(&digest) } else { &name };
         let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
         let is_this = settings.suite_archive.as_ref() == Some(&digest);
-        suites.push((format!("{UPLOADED}{digest}"), format!("{name} (yours{at})"), is_this));
+        suites.push((format!("{UPLOADED_PREFIX}{digest}"), format!("{name} (yours{at})"), is_this));
     }
     let is_named = settings.suite_archive.is_none();
     let known = &staff.app.suites;
@@ -75,7 +75,7 @@ impl Grading {
     /// Returns the settings with the form's values.
     pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
-        let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED) {
+        let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED_PREFIX) {
             Some(digest) => (before.suite.clone(), Some(digest.to_owned())),
             None => (self.suite.trim().to_owned(), None),
         };
@@ -172,7 +172,7 @@ pub(super) async fn set(
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.over(before)).await?;
-    Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{}", assignment.slug)))
 }
 
 pub(super) async fn set_suite(
@@ -182,5 +182,5 @@ pub(super) async fn set_suite(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let assignment = api::receive_suite(&staff, &assignment, &asked, request).await?;
-    Ok(see(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
 }

@@ -1,10 +1,10 @@
 //! The pages for signing in and out.
 use super::{
     super::{
-        guard::{SESSION, session_cookie},
+        guard::{SESSION_SECONDS, session_cookie},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, see, show,
+    Page, PageFrame, redirect_to, show,
 };
 use crate::{
     domain::{App, NewSecret, Visitor},
@@ -52,15 +52,15 @@ pub(super) struct NextPage {
 }
 
 /// Returns a path on this server; the home page if the text is not one. Browsers read `//` and `/\` as another host.
-pub(super) fn local(to: &str) -> &str {
+pub(super) fn local_path(to: &str) -> &str {
     let is_local =
         to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
     if is_local { to } else { "/" }
 }
 
 /// Returns an answer with a new session's cookie and a redirection.
-pub(super) fn enter(app: &App, session: &NewSecret, to: &str) -> Response {
-    with_cookie(&session_cookie(app, session.reveal(), SESSION), to)
+pub(super) fn start_session(app: &App, session: &NewSecret, to: &str) -> Response {
+    with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), to)
 }
 
 /// Returns the error in another service's answer to a sign-in, as one short line.
@@ -71,7 +71,7 @@ pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
 }
 
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
-    let mut response = see(to).into_response();
+    let mut response = redirect_to(to).into_response();
     if let Ok(value) = HeaderValue::from_str(cookie) {
         response.headers_mut().append(header::SET_COOKIE, value);
     }
@@ -79,7 +79,7 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
 }
 
 /// Returns the page with the ways to sign in.
-pub(super) fn ways(visitor: &Visitor, to: String, fault: String) -> Page {
+pub(super) fn render_ways(visitor: &Visitor, to: String, fault: String) -> Page {
     let query = byte_serialize(to.as_bytes()).collect::<String>();
     let known = visitor.app.provider.as_ref();
     let provider = known.map(|known| (known.label.clone(), format!("/sign-in/provider?to={query}")));
@@ -87,12 +87,12 @@ pub(super) fn ways(visitor: &Visitor, to: String, fault: String) -> Page {
 }
 
 pub(super) async fn page(visitor: Visitor, QueryInput(NextPage { to }): QueryInput<NextPage>) -> Page {
-    ways(&visitor, to, String::new())
+    render_ways(&visitor, to, String::new())
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_token(form.token.trim()).await?;
-    Ok(enter(&visitor.app, &session, local(&form.to)))
+    Ok(start_session(&visitor.app, &session, local_path(&form.to)))
 }
 
 /// Shows the page of a sign-in link. Opening the link does not sign in, because mail programs open links, too.
@@ -102,7 +102,7 @@ pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: Addre
 
 pub(super) async fn by_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
-    Ok(enter(&visitor.app, &session, "/"))
+    Ok(start_session(&visitor.app, &session, "/"))
 }
 
 pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
@@ -112,15 +112,15 @@ pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
 
 #[cfg(test)]
 mod tests {
-    use super::local;
+    use super::local_path;
 
     #[test]
     fn the_way_on_leads_to_this_server_only() {
-        assert_eq!(local("/c/physics/a/m1?q=x"), "/c/physics/a/m1?q=x");
+        assert_eq!(local_path("/c/physics/a/m1?q=x"), "/c/physics/a/m1?q=x");
         for other in
             ["", "c", "//evil.example", "/\\evil.example", "https://evil.example/", "/\r\nX: y", "/\t/evil.example"]
         {
-            assert_eq!(local(other), "/", "{other:?}");
+            assert_eq!(local_path(other), "/", "{other:?}");
         }
     }
 }

@@ -64,7 +64,7 @@ impl Statistics {
     pub(super) fn from_standings(standings: &[ShortStanding]) -> Self {
         let count = |part: &str| standings.iter().filter(|one| is_in(one, part)).count();
         let ran = standings.iter().filter(|one| !is_in(one, "never-ran"));
-        let mut shares: Vec<f64> = ran.filter_map(|one| share(one.counts.as_ref()?)).collect();
+        let mut shares: Vec<f64> = ran.filter_map(|one| points_share(one.counts.as_ref()?)).collect();
         shares.sort_by(f64::total_cmp);
         let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
         let mean = |count: usize| shares.iter().sum::<f64>() / count as f64;
@@ -89,7 +89,7 @@ impl Statistics {
 }
 
 /// Returns a submission's share of the points, in percent.
-fn share(counts: &CountedSubmission) -> Option<f64> {
+fn points_share(counts: &CountedSubmission) -> Option<f64> {
     let number = |text: &Option<String>| text.as_ref()?.parse::<f64>().ok();
     let (points, most) = (number(&counts.points)?, number(&counts.max_points)?);
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))

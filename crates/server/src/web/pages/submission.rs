@@ -3,7 +3,7 @@ use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
     course::OwnWork,
-    report, scenes, see, show, text,
+    redirect_to, report, scenes, show, text,
 };
 use crate::{
     domain::{Assignment, History, Member, Staff, Submission},
@@ -59,7 +59,7 @@ pub(super) async fn submit(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let accepted = api::receive(&member, &assignment, request, None, None, None).await?;
-    Ok(see(&format!("/c/{slug}/s/{}", accepted.submission.id)))
+    Ok(redirect_to(&format!("/c/{slug}/s/{}", accepted.submission.id)))
 }
 
 /// Finds the assignment of a submission, if the member may see it.
@@ -105,7 +105,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
         work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
-        change: changes.get(&id).map(scenes::change),
+        change: changes.get(&id).map(scenes::describe_change),
         page,
         report,
         submission,

@@ -9,7 +9,7 @@ use crate::{
 
 /// Returns a time as HTML, in UTC; a script converts it to the reader's time zone.
 pub(super) fn time(milliseconds: &i64) -> String {
-    let (exact, minute) = (calendar::exact(*milliseconds), calendar::format_minute(*milliseconds));
+    let (exact, minute) = (calendar::format_iso(*milliseconds), calendar::format_minute(*milliseconds));
     format!("<time datetime=\"{exact}\">{minute} UTC</time>")
 }
 
@@ -54,7 +54,7 @@ pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", round_points(points), round_points(most)),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
-        _ => "staff must look at it".to_owned(),
+        _ => "staff must check it".to_owned(),
     }
 }
 
@@ -106,7 +106,7 @@ pub(super) fn state(state: &str) -> &'static str {
         "waiting" => "waiting",
         "running" => "being graded",
         "done" => "graded",
-        "buried" => "the grader failed: not your fault, and staff is informed",
+        "buried" => "the grader failed; this is not your fault, and staff is informed",
         _ => "taken out of the queue",
     }
 }

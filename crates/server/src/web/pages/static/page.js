@@ -65,7 +65,7 @@ if (form) {
     request.upload.addEventListener("progress", ({ loaded, total }) => {
       bar.max = total;
       bar.value = loaded;
-      say(loaded < total ? `${Math.floor((100 * loaded) / total)} % sent` : "All is sent. The server looks at it.");
+      say(loaded < total ? `${Math.floor((100 * loaded) / total)} % sent` : "Upload complete. The server is checking the file.");
     });
     request.addEventListener("load", () => {
       if (request.status < 400) {
@@ -78,7 +78,7 @@ if (form) {
       stop(title ? `${title}: ${words.join(". ")}` : `The server answered ${request.status}.`);
     });
     request.addEventListener("error", () =>
-      stop("The connection broke off. Hand in again: the same upload counts once."),
+      stop("The connection was interrupted. Submit again; the same upload counts only once."),
     );
     request.open("POST", form.action);
     request.send(new FormData(form));
